@@ -1,6 +1,6 @@
-//! Names of companies: a pure function of the seed of a run and the customer number, made when a name is shown and
-//! stored nowhere (docs/mechanics/market/social/texts.md#names-of-companies). Since nothing else goes in, a name tells
-//! nothing about its company.
+//! Names of enterprises: a pure function of the run's seed and the customer number. They are computed for
+//! display and never stored (docs/mechanics/market/social/texts.md#names-of-enterprises). A name therefore
+//! reveals nothing about its enterprise.
 
 use std::fmt;
 use std::sync::{Arc, OnceLock};
@@ -10,7 +10,7 @@ use serde::Deserialize;
 use super::address::company_word;
 use novamind_world::params::EmailParts;
 
-/// The words of names: `assets/voice/companies.toml`.
+/// The words of names, from `assets/voice/companies.toml`.
 #[derive(Debug, Deserialize)]
 struct Words {
     heads: Vec<String>,
@@ -21,14 +21,14 @@ impl Words {
     fn shipped() -> &'static Words {
         static WORDS: OnceLock<Words> = OnceLock::new();
         let text = include_str!("../../assets/voice/companies.toml");
-        WORDS.get_or_init(|| toml::from_str(text).expect("the shipped words are tested"))
+        WORDS.get_or_init(|| toml::from_str(text).expect("the bundled words are valid"))
     }
 }
 
-/// What an address appends to the word of its company.
+/// Suffixes of company words in addresses.
 const LEGAL_FORMS: [&str; 4] = ["group", "works", "hq", "co"];
 
-/// The names of the companies of a run.
+/// The names of the enterprises of a run.
 #[derive(Clone)]
 pub struct CompanyNames {
     seed: u64,
@@ -42,12 +42,12 @@ impl fmt::Debug for CompanyNames {
 }
 
 impl CompanyNames {
-    /// The names of the companies of a run with this seed and these words of addresses.
+    /// Creates the names of a run from its seed and its address words.
     pub fn new(seed: u64, email: &EmailParts) -> CompanyNames {
         CompanyNames { seed, email: Arc::new(email.clone()) }
     }
 
-    /// The name of a company. It begins with the word of its address, or joins it to another.
+    /// Returns the name of an enterprise. It starts with the word of its address, or combines it with another word.
     pub fn of(&self, customer: u32) -> String {
         let first = first_word(company_word(customer, &self.email));
         let mut draw = Draw(mixed(self.seed ^ u64::from(customer).wrapping_mul(0x9E37_79B9_7F4A_7C15)));
@@ -60,12 +60,12 @@ impl CompanyNames {
         }
     }
 
-    /// The name with the number that statements and calls take: `Northgate Ashwick #16064`.
+    /// Returns the name with the customer number that tool calls and SQL use: `Northgate Ashwick #16064`.
     pub fn with_number(&self, customer: u32) -> String {
         format!("{} #{customer}", self.of(customer))
     }
 
-    /// A text of the records with names where it says `customer 16064`.
+    /// Replaces `customer 16064` by the name and the number in a recorded text.
     pub fn put_into(&self, text: &str) -> String {
         const WORD: &str = "ustomer ";
         let mut told = String::with_capacity(text.len() + 16);
@@ -90,14 +90,13 @@ impl CompanyNames {
     }
 }
 
-/// The word of an address as a name writes it: without a legal form, with a capital.
+/// Returns the company word of an address in title case, without a suffix.
 fn first_word(word: &str) -> String {
     let short = LEGAL_FORMS.iter().find_map(|form| word.strip_suffix(form).filter(|rest| rest.len() > 3));
     let mut letters = short.unwrap_or(word).chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().collect::<String>() + letters.as_str())
 }
 
-/// Numbers that follow from one.
 struct Draw(u64);
 
 impl Draw {
@@ -112,7 +111,7 @@ impl Draw {
     }
 }
 
-/// Every bit of the answer depends on every bit of the number.
+/// Mixes the bits of a number so that each output bit depends on every input bit.
 fn mixed(number: u64) -> u64 {
     let number = (number ^ (number >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     let number = (number ^ (number >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
@@ -139,9 +138,9 @@ mod tests {
             (1..200).map(|customer| names.of(customer)).collect::<Vec<_>>()
         };
         let same = of_seed(42).iter().zip(of_seed(7)).filter(|(one, other)| **one == *other).count();
-        assert!(same < 5, "{same} of 199 have one name in two runs");
+        assert!(same < 5, "{same} of 199 have the same name in two runs");
         assert_eq!(names(42).with_number(16_064), format!("{} #16064", names(42).of(16_064)));
-        // Recorded runs show these names: a change of the words renames every company.
+        // Users know enterprises by these names, so a change of the words renames all of them.
         assert_eq!(names(42).of(1), "Westhaven Wolgrove");
     }
 

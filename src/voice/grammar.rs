@@ -1,8 +1,8 @@
-//! A small grammar that writes sentences: rules with alternatives, filled from a context
+//! A grammar for sentences: rules with alternatives that are expanded with a context
 //! (docs/mechanics/market/social/texts.md#grammar).
 //!
-//! A grammar is a TOML file. `given` lists the values every context has, `maybe` those that may be missing, `tags`
-//! the conditions that may hold; `[rules]` holds the rules, nested tables making dotted names. In an alternative
+//! A grammar is a TOML file. `given` lists the values that every context has, `maybe` optional values, and `tags`
+//! possible conditions. `[rules]` contains the rules; nested tables create dotted names. In an alternative:
 //!
 //! | writing | means |
 //! |---|---|
@@ -11,9 +11,8 @@
 //! | `{work:group}` | the rule `work.S1` if the value `group` is `S1` and there is such a rule, else `work` |
 //! | `[one\|two\|]` | one of these, here possibly nothing; `[one]` is short for `[one\|]` |
 //! | `a/an` | the article that fits the next word |
-//!
-//! An alternative that names a missing value is passed over. Reading a grammar checks that every symbol is known,
-//! that no rule contains itself, and that every rule can be filled whatever is missing.
+//! An alternative with a missing value is skipped. Parsing checks that every symbol is known, that no rule
+//! contains itself, and that every rule can be expanded without optional values.
 
 #[cfg(test)]
 mod count;
@@ -25,7 +24,7 @@ use std::fmt;
 
 pub use polish::polish;
 
-/// What a text is about: values for its slots and the conditions that hold.
+/// The values and conditions of a text.
 #[derive(Debug, Clone, Default)]
 pub struct Context {
     values: BTreeMap<&'static str, String>,
@@ -47,7 +46,7 @@ impl Context {
         }
     }
 
-    /// Adds a condition if it holds.
+    /// Adds a tag if `holds` is true.
     pub fn tag(mut self, name: &'static str, holds: bool) -> Context {
         if holds {
             self.tags.insert(name);
@@ -55,33 +54,33 @@ impl Context {
         self
     }
 
-    /// The value of this name.
+    /// Returns the value with this name.
     pub fn value(&self, name: &str) -> Option<&str> {
         self.values.get(name).map(String::as_str)
     }
 
-    /// Names of its values and conditions.
+    /// Returns the names of all values and tags.
     #[cfg(test)]
     pub fn names(&self) -> impl Iterator<Item = &'static str> {
         self.values.keys().chain(&self.tags).copied()
     }
 
-    /// Whether a condition holds.
+    /// Returns whether a tag is set.
     pub fn holds(&self, tag: &str) -> bool {
         self.tags.contains(tag)
     }
 }
 
-/// Rules that were read and checked.
+/// Parsed and validated rules.
 #[derive(Debug, Clone)]
 pub struct Grammar {
     rules: BTreeMap<String, Vec<Alternative>>,
-    /// Names a context may use, for a check of the caller.
+    /// Declared names, to check the context.
     #[cfg(test)]
     known: BTreeSet<String>,
 }
 
-/// Why a grammar cannot be used.
+/// The reason why a grammar is invalid.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct GrammarError(String);
 
@@ -95,7 +94,7 @@ impl std::error::Error for GrammarError {}
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Alternative {
-    /// Tags and whether they have to hold or not.
+    /// Tags and whether they have to be set or not set.
     needs: Vec<(String, bool)>,
     parts: Vec<Part>,
 }
@@ -115,45 +114,46 @@ enum Part {
     Choice(Vec<Vec<Part>>),
 }
 
-/// Chooses among alternatives: gets their number, which is never 0, and returns an index below it.
+/// Chooses an alternative: receives their number, at least 1, and returns a smaller index.
 pub type Chooser<'a> = &'a mut dyn FnMut(usize) -> usize;
 
 impl Grammar {
-    /// Reads a grammar.
+    /// Parses a grammar.
     ///
     /// # Errors
-    /// It is no TOML of this form, a symbol is unknown, a rule contains itself or cannot always be filled.
+    /// If the text is not TOML of this form, a symbol is unknown, or a rule contains itself or cannot always
+    /// be expanded.
     pub fn read(source: &str) -> Result<Grammar, GrammarError> {
         parse::read(&[source])
     }
 
-    /// Reads a grammar that stands in several files, which share their names and rules.
+    /// Parses a grammar from several files, which share their names and rules.
     ///
     /// # Errors
-    /// As [`Grammar::read`], or two files define one rule.
+    /// As [`Grammar::read`], or if two files define the same rule.
     pub fn read_all(sources: &[&str]) -> Result<Grammar, GrammarError> {
         parse::read(sources)
     }
 
-    /// Whether there is a rule of this name.
+    /// Returns whether a rule exists.
     pub fn has(&self, rule: &str) -> bool {
         self.rules.contains_key(rule)
     }
 
-    /// Whether a value or tag of this name is declared.
+    /// Returns whether a value or tag with this name is declared.
     #[cfg(test)]
     pub fn knows(&self, name: &str) -> bool {
         self.known.contains(name)
     }
 
-    /// Number of different ways to fill a rule in a context.
+    /// Returns the number of different expansions of a rule in a context.
     #[cfg(test)]
     pub fn phrasings(&self, rule: &str, context: &Context) -> u64 {
         count::phrasings(self, rule, context)
     }
 
-    /// Fills a rule. Within one text an alternative comes a second time only when all others are used up. An
-    /// unknown rule gives an empty text; reading the grammar made sure that no rule names one.
+    /// Expands a rule. Within one text, an alternative is repeated only after all others were used. An
+    /// unknown rule results in an empty text; parsing ensures that no rule refers to one.
     pub fn write(&self, rule: &str, context: &Context, choose: Chooser<'_>) -> String {
         let mut writer =
             Expansion { grammar: self, context, choose, used: BTreeSet::new(), text: String::new() };
@@ -177,7 +177,7 @@ impl Alternative {
     }
 }
 
-/// Whether all values that are named outside of choices are there.
+/// Returns whether all values outside of choices are present.
 fn values_given(parts: &[Part], context: &Context) -> bool {
     parts.iter().all(|part| match part {
         Part::Value(name) => context.value(name).is_some(),

@@ -1,5 +1,5 @@
-//! Words for facts: posts, notices, readings of the economy, letters of companies, addresses; and the judge of the
-//! player's posts. Facts go in, text comes out (or text in, scores out); nothing here touches a number of the world.
+//! Text for facts: posts, notices, readings of the economy, messages of enterprises, addresses; and the judge
+//! of the player's posts. This crate converts facts to text and text to scores; it never changes the world.
 
 pub mod address;
 mod company_names;

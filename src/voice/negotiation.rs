@@ -1,10 +1,10 @@
-//! What companies write: openers, prices of their own, agreement; and what the market records of a deal
-//! (docs/mechanics/market/social/texts.md#messages-of-companies).
+//! Messages of enterprises and the system's record of a deal
+//! (docs/mechanics/market/social/texts.md#messages-of-enterprises).
 //!
-//! A message is an opening, a core with the facts, and an ending in the manner of the company. Opening and core
-//! go by the running number of the message with a stride that is coprime to the number of their pairs, so that no
-//! two messages of a situation are equal until all pairs have been used; there are more than sixty of each.
-//! A message says only what the offers and the profile of the company show anyway.
+//! A message consists of an opening, a core with the facts, and an ending in the decision style of the
+//! enterprise. Opening and core are selected by the running number of the message with a stride that is
+//! coprime to the number of pairs. Messages of a situation therefore repeat only after all pairs, more than
+//! sixty each, have been used. A message reveals only what the offers and the profile show anyway.
 
 mod phrases;
 
@@ -18,14 +18,14 @@ use novamind_world::params::Personas;
 /// Step from one message to the next through the pairs of opening and core.
 const STRIDE: u32 = 31;
 
-/// A price of the company's own below the offered one by less than this share is near, by more than the second
-/// far.
+/// A counter-offer is near if it is below the offered price by less than the first share, and far if by more
+/// than the second.
 const GAPS: (f64, f64) = (0.10, 0.35);
 
-/// From this turn on a company may say that it takes long.
+/// Turn from which an enterprise may mention that the negotiation is long.
 const LONG_TALKS: u32 = 6;
 
-/// Text of a turn; empty where nothing is said in words.
+/// Returns the text of a turn; empty if it has no text.
 pub fn message(turn: &ThreadTurn, personas: &Personas) -> String {
     match &turn.content {
         TurnContent::Opening | TurnContent::Offer(_) | TurnContent::Rejection => String::new(),
@@ -57,7 +57,7 @@ fn money(price: f64) -> String {
     format!("${}", grouped(price, 2))
 }
 
-/// Words that fit the distance between the two sides.
+/// Returns the phrases for the distance between the two prices.
 fn by_gap(asked: f64, offered: f64) -> &'static Phrases {
     let gap = if offered > 0.0 { (offered - asked) / offered } else { 0.0 };
     match gap {
@@ -78,7 +78,7 @@ fn written(turn: &ThreadTurn, phrases: &Phrases, facts: &[(&str, String)], perso
     format!("{} {said} {}", phrases.openings[opening], ending(turn, personas))
 }
 
-/// The last sentence: how the company decides, what it worries about, and that talks take long.
+/// Returns the closing sentence: the decision style, the primary concern, or the length of the negotiation.
 fn ending(turn: &ThreadTurn, personas: &Personas) -> String {
     let profile = CompanyProfile::of(turn, personas);
     let settled = matches!(turn.content, TurnContent::Acceptance(_));
@@ -98,7 +98,7 @@ fn with_article(word: &str) -> String {
     format!("{} {word}", if vowel { "an" } else { "a" })
 }
 
-/// Words of a company's profile, as the table of customers shows them.
+/// Profile words of an enterprise, as in the customers table.
 struct CompanyProfile<'a> {
     culture: &'a str,
     decision: &'a str,
@@ -120,7 +120,7 @@ impl<'a> CompanyProfile<'a> {
     }
 }
 
-/// How a company comes to decisions.
+/// Decision style of an enterprise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(usize)]
 enum Manner {
@@ -132,7 +132,7 @@ enum Manner {
 }
 
 impl Manner {
-    /// The manner behind the words of a profile.
+    /// Returns the decision style described by a profile.
     fn of(decision: &str) -> Manner {
         let has = |words: &[&str]| words.iter().any(|word| decision.contains(word));
         if has(&["committee-light", "fast", "quick", "pragmatic", "field-tested"]) {
@@ -191,7 +191,7 @@ mod tests {
     fn no_two_of_sixty_messages_are_equal() {
         let personas = Params::shipped().personas;
         for content in situations() {
-            // All messages of one situation: the hardest case.
+            // All messages have the same situation, which is the hardest case.
             let mut recent: VecDeque<String> = VecDeque::new();
             let mut all = BTreeSet::new();
             for number in 0..500 {
@@ -218,7 +218,7 @@ mod tests {
             assert_eq!(
                 sentences.len(),
                 phrases.openings.len() + phrases.cores.len(),
-                "a phrase stands twice"
+                "a phrase is duplicated"
             );
         }
     }

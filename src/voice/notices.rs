@@ -1,11 +1,11 @@
-//! The inbox: one line per notice.
+//! Texts of inbox notices, one line each.
 
 use novamind_base::notation::grouped;
 use novamind_world::events::{Notice, Reaction};
 use novamind_world::identifiers::Group;
 use novamind_world::params::CeoPosts;
 
-/// The company that a notice is about.
+/// The enterprise that a notice is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Party {
     /// Customer number.
@@ -23,7 +23,7 @@ impl Party {
     }
 }
 
-/// Text of a notice, which names its company where that is known.
+/// Returns the text of a notice, which names its enterprise if it is known.
 pub fn notice(notice: &Notice, party: Option<Party>) -> String {
     let who = party.map_or("A company".to_owned(), |party| party.words());
     match notice {
@@ -31,7 +31,7 @@ pub fn notice(notice: &Notice, party: Option<Party>) -> String {
         Notice::LeadLostByTimeout { days } => {
             format!("{who} got no answer for {days} days. The lead is lost.")
         }
-        // The database words it, where it is one fact for all its days.
+        // Worded by the database, because it is one fact for several days.
         Notice::LeadLossRepeated { .. } => String::new(),
         Notice::LeadSilent => format!("{who} declines and answers no more. The lead is lost."),
         Notice::CounterOffer { customer } => format!("Customer {customer} answers with a price of its own."),
@@ -66,14 +66,14 @@ pub fn notice(notice: &Notice, party: Option<Party>) -> String {
                 "Study of group {group} complete: level {level}, \u{b1}{accuracy:.0}% (day {day}, {what})"
             )
         }
-        // Whoever knows the text of the post uses `reaction_to` instead.
+        // Callers that know the text of the post use `reaction_to` instead.
         Notice::OwnPostSeen(reaction) => {
             format!("Your post was seen {} {}", reaction.views, times(reaction.views))
         }
     }
 }
 
-/// Text of the notice about a post of the player: views, its beginning, tone, strongest reactions.
+/// Returns the notice about a post of the player: views, start of the text, tone, strongest reactions.
 pub fn reaction_to(content: &str, reaction: &Reaction, law: &CeoPosts) -> String {
     let shown = law.notification_preview_chars as usize;
     let mut preview: String = content.chars().take(shown).collect();
@@ -90,7 +90,7 @@ pub fn reaction_to(content: &str, reaction: &Reaction, law: &CeoPosts) -> String
         .iter()
         .flatten()
         .map(|(group, effect)| {
-            // A reaction that rounds to nothing carries no sign.
+            // A reaction that rounds to zero has no sign.
             let effect = if effect.abs() < 0.05 { 0.0 } else { *effect };
             format!("{group} {effect:+.1}")
         })

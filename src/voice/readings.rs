@@ -1,8 +1,8 @@
-//! Published readings of the economy in three or four sentences.
+//! Descriptions of published readings of the economy, three or four sentences each.
 
 use novamind_world::events::{Reading, Trend};
 
-/// Description of a reading.
+/// Returns the description of a reading.
 pub fn reading(reading: &Reading) -> String {
     let change = reading.change;
     let movement = match change {

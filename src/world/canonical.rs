@@ -1,8 +1,8 @@
-//! The canonical bytes of the state, from which the state hash is made and which a snapshot keeps.
+//! The canonical byte representation of the state, used for state hashes and snapshots.
 //!
-//! Little endian, floats by their bits, fields in declaration order, lists preceded by their length
-//! (`docs/formats/snapshot.md`). Two worlds with equal bytes behave alike from here on, and a world can be read
-//! back from them ([`Restore`]).
+//! Integers are little-endian, floats are stored as their bits, fields follow declaration order and lists are
+//! preceded by their length (`docs/formats/snapshot.md`). Two worlds with equal bytes evolve identically, and
+//! a world can be restored from its bytes ([`Restore`]).
 
 mod restore;
 mod stretches;
@@ -16,17 +16,17 @@ pub use stretches::{Stretch, hash_of_stretches};
 
 use super::identifiers::{ByChannel, ByGroup, ByPlan, Channel, Group, Plan};
 
-/// Collects canonical bytes and hashes them in large pieces.
+/// Collects canonical bytes and hashes them in large chunks.
 pub struct CanonicalHasher {
     hasher: blake3::Hasher,
     pending: Vec<u8>,
-    /// As soon as this many bytes are pending, they are hashed.
+    /// Pending bytes are hashed as soon as there are this many.
     piece: usize,
 }
 
-/// Bytes that are hashed together: a power of two, so that the tree of the hash is made of whole branches.
+/// Bytes hashed at once: a power of two, so that each chunk is a complete subtree of the hash.
 const PIECE: usize = 1 << 16;
-/// Values of a column that are put together before they are appended.
+/// Values of a column that are converted before their bytes are appended.
 const TOGETHER: usize = 128;
 
 impl Default for CanonicalHasher {
@@ -49,18 +49,18 @@ impl CanonicalHasher {
         }
     }
 
-    /// One that hashes nothing and keeps the bytes; it begins with room for so many.
+    /// Returns a hasher that only collects bytes, with capacity for `room` of them.
     pub fn collector(room: usize) -> CanonicalHasher {
         let hasher = blake3::Hasher::new();
         CanonicalHasher { hasher, pending: Vec::with_capacity(room), piece: usize::MAX }
     }
 
-    /// The bytes of a collector.
+    /// Returns the bytes of a collector.
     pub fn into_bytes(self) -> Vec<u8> {
         self.pending
     }
 
-    /// Appends the bytes of many equal values: columns are most of the state, so they go by the hundred.
+    /// Appends the bytes of many values in batches, because columns are most of the state.
     fn column<T: Copy, const WIDTH: usize>(&mut self, values: &[T], bytes_of: impl Fn(T) -> [u8; WIDTH]) {
         let mut together = [[0; WIDTH]; TOGETHER];
         for values in values.chunks(TOGETHER) {
@@ -70,8 +70,7 @@ impl CanonicalHasher {
         }
     }
 
-    /// Hashes whole pieces and keeps what is left over: a hash that stopped within a chunk goes on chunk by chunk until
-    /// it stands at a round number again, and many at once are several times as fast.
+    /// Hashes complete chunks and keeps the remainder: BLAKE3 is several times as fast on aligned input.
     #[cold]
     fn hash_pending(&mut self) {
         let whole = self.pending.len() / self.piece * self.piece;
@@ -79,19 +78,19 @@ impl CanonicalHasher {
         self.pending.drain(..whole);
     }
 
-    /// The hash of everything fed so far.
+    /// Returns the hash of all bytes fed so far.
     pub fn finish(mut self) -> blake3::Hash {
         self.hasher.update(&self.pending);
         self.hasher.finalize()
     }
 }
 
-/// A part of the state that has canonical bytes.
+/// A part of the state with a canonical byte representation.
 pub trait Canonical {
-    /// Feeds the bytes of this value.
+    /// Feeds the bytes of this value to `hasher`.
     fn feed(&self, hasher: &mut CanonicalHasher);
 
-    /// Feeds the bytes of these values, one after the other.
+    /// Feeds the bytes of `values` in order.
     fn feed_all(values: &[Self], hasher: &mut CanonicalHasher)
     where
         Self: Sized,
@@ -100,14 +99,14 @@ pub trait Canonical {
     }
 }
 
-/// Hash of one value.
+/// Returns the hash of one value.
 pub fn hash_of(value: &impl Canonical) -> blake3::Hash {
     let mut hasher = CanonicalHasher::default();
     value.feed(&mut hasher);
     hasher.finish()
 }
 
-/// Canonical bytes of one value.
+/// Returns the canonical bytes of one value.
 pub fn bytes_of(value: &impl Canonical) -> Vec<u8> {
     let mut collector = CanonicalHasher::collector(0);
     value.feed(&mut collector);
@@ -249,7 +248,8 @@ impl<T: Canonical> Canonical for ByChannel<T> {
     }
 }
 
-/// Implements [`Canonical`] and [`Restore`] for a struct by naming all its fields; forgetting one does not compile.
+/// Implements [`Canonical`] and [`Restore`] for a struct from the list of all its fields. A missing field is
+/// a compile error.
 #[macro_export]
 macro_rules! canonical {
     ($($name:ident { $($field:ident),* $(,)? })*) => {$(
@@ -270,7 +270,8 @@ macro_rules! canonical {
 }
 pub use canonical;
 
-/// Implements [`Canonical`] and [`Restore`] for plain enums by their number; naming all their values is checked.
+/// Implements [`Canonical`] and [`Restore`] for a fieldless enum by its discriminant. A missing variant is a
+/// compile error.
 macro_rules! canonical_codes {
     ($($name:ident { $($value:ident),* $(,)? })*) => {$(
         impl $crate::canonical::Canonical for $name {

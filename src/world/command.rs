@@ -1,7 +1,8 @@
-//! What a tool can do to the world: an effect is decided, its draws are made, and then it cannot fail.
+//! Commands that change the world. A tool call becomes a command, its random draws are resolved, and applying
+//! it cannot fail.
 //!
-//! The three steps are apart so that a tool call can be checked without consequence ([`Command`]), recorded
-//! with its result ([`World::resolve`] changes nothing), and only then applied ([`World::apply`]).
+//! The steps are separate so that a call can be validated without side effects ([`Command`]), recorded with
+//! its result ([`World::resolve`] changes nothing), and only then applied ([`World::apply`]).
 
 use super::enterprise::letters::{Letter, Proposal};
 use super::events::{Attempt, Project, Study};
@@ -15,72 +16,72 @@ use super::random::Streams;
 use super::settings::SettingsChange;
 use super::state::World;
 
-/// A decided change.
-#[expect(clippy::large_enum_variant, reason = "there is one at a time")]
+/// A validated change.
+#[expect(clippy::large_enum_variant, reason = "only one exists at a time")]
 #[derive(Debug, Clone, PartialEq)]
 pub enum Command {
-    /// Nothing changes: the tool only reads.
+    /// No change: the tool only reads.
     None,
-    /// A family of settings, complete after the change.
+    /// Replaces a family of settings.
     Set(SettingsChange),
-    /// An R&D project of this tier is paid and started.
+    /// Pays for and starts an R&D project of this tier.
     StartResearch(u8),
-    /// An attempt to find a group is paid and made.
+    /// Pays for an attempt to discover a group.
     ResearchMarket,
-    /// A study of a group up to this level is paid and ordered.
+    /// Pays for and orders a study of a group up to this level.
     ResearchGroup(Group, u8),
-    /// Nothing changes, but the estimates of a group have errors that are drawn.
+    /// No change, but the errors of the group's estimates are drawn.
     ReadInsights(Group),
-    /// Offerings go out to companies.
+    /// Sends offers to enterprises.
     SendDeals(Vec<Proposal>),
-    /// Threads with companies are ended, by number.
+    /// Ends threads with enterprises, by number.
     RejectDeals(Vec<u32>),
-    /// The player posts in public.
+    /// Publishes a post of the player.
     Post(Draft),
 }
 
-/// A post that the player is about to publish.
+/// A post to be published.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Draft {
     /// Its text.
     pub content: String,
-    /// Number of the post it answers.
+    /// Number of the post that it replies to.
     pub reply_to: Option<u32>,
 }
 
-/// A decided change whose draws are known.
-#[expect(clippy::large_enum_variant, reason = "there is one at a time")]
+/// A validated change with its random draws.
+#[expect(clippy::large_enum_variant, reason = "only one exists at a time")]
 #[derive(Debug, Clone, PartialEq)]
 pub enum ResolvedCommand {
-    /// Nothing changes.
+    /// No change.
     None,
     /// A family of settings.
     Set(SettingsChange),
     /// An R&D project and its price in dollars.
     StartResearch(Project, f64),
-    /// An attempt to find a group.
+    /// An attempt to discover a group.
     ResearchMarket(Attempt),
     /// A study of a group and its price in dollars.
     ResearchGroup(Study, f64),
-    /// Nothing changes; the estimates of a group, none if it is not known.
+    /// No change; the estimates of a group, or `None` if the group is unknown.
     ReadInsights(Option<Box<Insights>>),
-    /// Letters to companies.
+    /// Messages to enterprises.
     SendDeals(Vec<Letter>),
-    /// Threads that are ended, by number.
+    /// Numbers of the threads that end.
     RejectDeals(Vec<u32>),
     /// A post of the player.
     Post(OwnPostMade),
 }
 
 impl ResolvedCommand {
-    /// Whether it changes nothing.
+    /// Returns whether the command changes nothing.
     pub fn only_reads(&self) -> bool {
         matches!(self, ResolvedCommand::None | ResolvedCommand::ReadInsights(_))
     }
 }
 
 impl World {
-    /// Makes the draws of an effect; changes nothing.
+    /// Makes the random draws of `effect` without changing the world.
     pub fn resolve(&self, effect: Command, params: &Params, streams: &Streams) -> ResolvedCommand {
         match effect {
             Command::None => ResolvedCommand::None,
@@ -114,7 +115,7 @@ impl World {
         }
     }
 
-    /// Applies a resolved. What it does carries the day already simulated; `facts` receives it.
+    /// Applies a resolved command to the current day and records it in `facts`.
     pub fn apply(&mut self, resolved: ResolvedCommand, params: &Params, facts: &mut Facts) {
         facts.begin(self.day);
         match resolved {

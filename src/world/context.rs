@@ -1,4 +1,4 @@
-//! What everybody's day has in common: made once the service has been observed, and read until the evening.
+//! Values of a day that all customer mechanisms share, created after the service has been observed.
 
 use super::events::ServiceDay;
 use super::morning::Morning;
@@ -8,16 +8,16 @@ use super::random::Streams;
 use super::settings::Settings;
 use crate::quality::TenureTable;
 
-/// The day as those who feel, decide, negotiate and pay meet it.
+/// The context in which customers use, evaluate, negotiate and pay on one day.
 #[derive(Clone, Copy)]
 pub struct DayContext<'a> {
-    /// Values frozen this morning.
+    /// Values fixed at the start of the day.
     pub morning: &'a Morning,
     /// Settings of today.
     pub settings: &'a Settings,
     /// Service of today.
     pub service: &'a ServiceDay,
-    /// Quality lost to today's service, where fidelity makes it count.
+    /// Quality lost to today's service, if the fidelity setting applies it to decisions.
     pub service_penalty: f64,
     /// In-app ads.
     pub ads: &'a AdLoad<'a>,
@@ -40,7 +40,7 @@ impl DayContext<'_> {
 pub(crate) mod tests {
     use super::*;
 
-    /// Runs `check` on a day whose service is given; nobody has been here for longer than 600 days.
+    /// Runs `check` with the context of a given day. Tenure is at most 600 days.
     pub(crate) fn on_day<R>(
         morning: &Morning,
         settings: &Settings,

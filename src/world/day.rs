@@ -1,4 +1,4 @@
-//! A day, as a list: read [`step_day`] from top to bottom (`docs/mechanics/day.md`).
+//! The simulation of one day: read [`step_day`] from top to bottom (`docs/mechanics/day.md`).
 
 pub mod room;
 pub mod watch;
@@ -35,7 +35,7 @@ use crate::quality::{TenureTable, service_penalty};
 use crate::reputation;
 use crate::reputation::{Mood, ReputationWrite};
 
-/// What the player never sees of a day; read by the x-ray and by the comparison with reference figures.
+/// Hidden values of a day for inspections and for comparison with reference figures.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DayTrace {
     /// Factors of today's leads.
@@ -44,7 +44,7 @@ pub struct DayTrace {
 
 canonical! { DayTrace { leads } }
 
-/// Simulates one day. Afterwards `facts` holds what happened.
+/// Simulates one day and stores what happened in `facts`.
 pub fn step_day(
     world: &mut World,
     params: &Params,
@@ -54,7 +54,7 @@ pub fn step_day(
     step_day_watched(world, params, streams, &Held::default(), facts, &Unwatched)
 }
 
-/// Simulates one day as [`step_day`] does, with what is held of its inputs, and shows it to somebody on the way.
+/// Simulates one day like [`step_day`], with fixed inputs, and notifies an observer of each step.
 pub fn step_day_watched(
     world: &mut World,
     params: &Params,
@@ -67,7 +67,7 @@ pub fn step_day_watched(
     let (day, total_days) = (world.day, world.total_days);
     facts.begin(day);
 
-    // The morning: what stays as it is for the whole day.
+    // Values that stay constant during the day.
     surges::draw_week(day, total_days, &mut world.market.surges, params, streams);
     let morning = morning_of(world, params);
     watch.morning_came(world, &morning, params);
@@ -76,13 +76,13 @@ pub fn step_day_watched(
         refresh_requirements(customers, &morning, params);
     }
 
-    // The product is used, and holds up or not.
+    // Usage, and the service under that load.
     let metered = usage::meter(customers, &morning, params, facts);
     let service = service::observe(metered.total, &morning, held.service_on(day), params, streams, facts);
     research::complete(day, product, facts);
     studies::complete(day, market, params, facts);
 
-    // The market moves.
+    // The market changes.
     let seats = ByGroup::from_fn(|group| market.economy.multiplier(group, Dimension::SeatCount, params));
     if !held.holds_drift(day) && drift::apply(day, &mut market.drift, customers, &seats, params) {
         refresh_requirements(customers, &morning, params);
@@ -109,7 +109,7 @@ pub fn step_day_watched(
         streams,
     };
 
-    // Subscribers call for help, feel, decide, and pay if they stay; companies wait for answers.
+    // Subscribers open issues, update satisfaction, decide and pay; enterprises negotiate.
     let scene = Scene { day: &today, chronicle: &market.social.chronicle };
     let mut felt = feel(customers, &today, &scene, watch);
     let crowd = felt.voices.map(|voices| crowd::listen(voices, customers, &scene, streams));
@@ -134,14 +134,14 @@ pub fn step_day_watched(
     reputation::contribute(&mut market.reputation, &moods, is_known, params, &mut told);
     watch.reputation_settled(&moods, market, params);
 
-    // People and the press write.
+    // Customers and the press write posts.
     if let Some(mut crowd) = crowd {
         crowd.join(&renewals.gave_up, &negotiated.lost, params);
         crowd.publish(&mut market.social, params, streams, facts);
     }
     press::write_about_the_economy(day, &market.economy, &mut market.social, params, streams, facts);
 
-    // New customers come.
+    // New customers arrive.
     let coming = arrivals::Arrivals { day: &today, market };
     let subscribers = customers.active();
     let mut factors = arrivals::expect(&coming, &subscribers);
@@ -150,7 +150,7 @@ pub fn step_day_watched(
     let leads = arrivals::arrive(&coming, &factors, customers, enterprise, facts);
     finance.cash -= f64::from(leads.all) * params.leads.lead_acquisition_cost;
 
-    // Money changes hands.
+    // Payments and costs.
     let received = billing::collect(customers, decided.billed, &today, &negotiated.suspended, facts);
     finance.cash += received;
     let costs = pay_running_costs(finance, &metered, &morning, settings, params, facts);
@@ -183,15 +183,15 @@ pub fn step_day_watched(
     (figures, DayTrace { leads: factors })
 }
 
-/// What the first round among subscribers brings, block by block.
+/// Results of the first sweep over subscribers, by block.
 struct Felt {
     calls: Vec<IssueBatch>,
     moods: Vec<(Group, Mood)>,
-    /// On a day on which people post.
+    /// `None` unless customers post today.
     voices: Option<Vec<Voices>>,
 }
 
-/// Subscribers call for help, and their satisfaction moves; those who may post are heard.
+/// Finds new issues, updates satisfaction, and weighs potential authors on posting days.
 fn feel(customers: &mut Customers, day: &DayContext<'_>, scene: &Scene<'_>, watch: &dyn DayWatch) -> Felt {
     let listening = crowd::is_posting_day(day.day(), day.params);
     let felt = customers.sweep(|group, number, block| {
@@ -206,14 +206,14 @@ fn feel(customers: &mut Customers, day: &DayContext<'_>, scene: &Scene<'_>, watc
     Felt { calls, moods, voices: listening.then(|| voices.into_iter().flatten().collect()) }
 }
 
-/// What the second round brings, block by block.
+/// Results of the second sweep, by block.
 struct Decided {
     settled: Vec<Settled>,
     decisions: Vec<Decisions>,
     billed: Vec<Bills>,
 }
 
-/// Issues are settled; those whose day it is decide, and get their bill if they stay.
+/// Settles issues, then lets customers who are due decide; those who stay are billed.
 fn decide(
     customers: &mut Customers,
     calls: Vec<IssueBatch>,
@@ -231,7 +231,7 @@ fn decide(
     Decided { settled, decisions, billed }
 }
 
-/// The morning of the world's present day.
+/// Returns the values at the start of the world's current day.
 pub fn morning_of(world: &World, params: &Params) -> Morning {
     let core = world.settings.core;
     Morning {
@@ -248,12 +248,11 @@ pub fn morning_of(world: &World, params: &Params) -> Morning {
     }
 }
 
-/// Recomputes what everybody requires, after the group's budget drift or their own curve moved.
+/// Recomputes the required quality of all subscribers after a change of their curves or their group's budget drift.
 fn refresh_requirements(customers: &mut Customers, morning: &Morning, params: &Params) {
     customers.sweep(|group, _, block| refresh_block(group, block, morning, params));
 }
 
-/// Books the ad revenue of the day, if there is any.
 fn earn_from_ads(customers: &Customers, ads: &AdLoad<'_>, finance: &mut Finance, facts: &mut Facts) {
     let revenue = ads::earn(customers, ads, facts);
     if revenue > 0.0 {
@@ -262,7 +261,7 @@ fn earn_from_ads(customers: &Customers, ads: &AdLoad<'_>, finance: &mut Finance,
     }
 }
 
-/// Cash, recurring revenue and stocks as they stand.
+/// Returns cash, recurring revenue, subscribers and seats at the end of the day.
 pub fn closing_figures(world: &World) -> DayFigures {
     let (mut mrr, mut individual_subscribers, mut enterprise_seats) = (0.0, 0, 0);
     let blocks: Vec<_> = world.customers.blocks().collect();

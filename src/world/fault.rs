@@ -1,41 +1,41 @@
-//! Faults: mechanisms that are wrong on purpose, for those who learn to find errors with the x-ray
+//! Seeded faults: deliberate errors of mechanisms for debugging exercises with the x-ray
 //! (`docs/debugging-walkthrough.md`).
 //!
-//! A fault is asked for once a day, for a group or for an event, never for a customer, so that a world without one is as
-//! fast as if there were none. It is no parameter: no file and no setting reaches it.
+//! Faults are checked once per day, group or event and never per customer, so worlds without a fault run at
+//! full speed. A fault is not a parameter: no file and no setting can change it.
 
 use serde::{Deserialize, Serialize};
 
 use super::params::Params;
 
-/// A mechanism that is wrong in a whole run.
+/// A deliberate error of one mechanism for a whole run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "u32", into = "u32")]
 pub enum Fault {
-    /// The economy moves leads against the sensitivity of a group.
+    /// The economy changes leads with the opposite sign of a group's sensitivity.
     EconomyReversed,
-    /// Satisfaction takes demand / quota for quota / demand.
+    /// Satisfaction uses demand / quota instead of quota / demand.
     QuotaInverted,
-    /// Rivals make the smaller of their two possible moves.
+    /// Competitors make the smaller of their two possible moves.
     SmallerRivalMove,
-    /// Spill-over has the wrong sign.
+    /// Spillover has the wrong sign.
     SpillOverReversed,
-    /// Tenure counts days where it should count months.
+    /// Tenure is counted in days instead of months.
     TenureInDays,
-    /// Group totals of drift are moved twice.
+    /// Group totals of drift change twice.
     DriftTwice,
-    /// Word of mouth takes the rate from the target to the source.
+    /// Word of mouth uses the rate from the target to the source.
     ReferralsSwapped,
-    /// All compute is paid at the unit cost of plan A.
+    /// Compute for all plans is paid at the unit cost of plan A.
     ComputeOfOnePlan,
-    /// Reputation falls below its floor.
+    /// Reputation can fall below its minimum.
     ReputationWithoutFloor,
-    /// Targeted development gains what general development would.
+    /// Targeted development has the gain of general development.
     TargetedGainAsGeneral,
 }
 
 impl Fault {
-    /// All of them; the number of each is its place, from 1.
+    /// All faults; the number of each is its position, from 1.
     pub const ALL: [Fault; 10] = [
         Fault::EconomyReversed,
         Fault::QuotaInverted,
@@ -49,12 +49,12 @@ impl Fault {
         Fault::TargetedGainAsGeneral,
     ];
 
-    /// The fault with this number.
+    /// Returns the fault with this number.
     pub fn numbered(number: u32) -> Option<Fault> {
         Fault::ALL.into_iter().find(|fault| fault.number() == number)
     }
 
-    /// Its number, from 1.
+    /// Returns the number of the fault, from 1.
     pub fn number(self) -> u32 {
         self as u32 + 1
     }
@@ -77,7 +77,7 @@ impl TryFrom<u32> for Fault {
 }
 
 impl Params {
-    /// Whether a world with these parameters has this fault.
+    /// Returns whether a world with these parameters has this fault.
     #[inline]
     pub fn has_fault(&self, fault: Fault) -> bool {
         self.fault == Some(fault)
@@ -104,9 +104,9 @@ mod tests {
         let sound = Params::shipped();
         let faulty = Params { fault: Some(Fault::DriftTwice), ..sound.clone() };
         assert_ne!(sound.digest(), faulty.digest());
-        assert!(sound.differences(&faulty).is_empty(), "a setting would name it");
+        assert!(sound.differences(&faulty).is_empty(), "a fault is not a parameter");
         let set = faulty.with("operations.base_outage_prob", toml::Value::Float(0.5)).expect("it fits");
-        assert_eq!(set.fault, faulty.fault, "what is set later keeps it");
+        assert_eq!(set.fault, faulty.fault, "setting a parameter keeps the fault");
         assert!(faulty.value("fault").is_err());
     }
 }

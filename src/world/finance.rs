@@ -1,4 +1,4 @@
-//! Money: what a day costs, where cash goes, and when a run is over (`docs/mechanics/money.md`).
+//! Money: the costs of a day, the ledger, and bankruptcy (`docs/mechanics/money.md`).
 
 use super::canonical::canonical;
 use super::events::{Category, Facts, LedgerEntry, LedgerNote};
@@ -19,19 +19,19 @@ pub struct Finance {
 canonical! { Finance { cash } }
 
 impl Finance {
-    /// Books a movement.
+    /// Adds an entry to the ledger and to cash.
     pub fn book(&mut self, entry: LedgerEntry, facts: &mut Facts) {
         self.cash += entry.amount;
         facts.ledger.push(entry);
     }
 
-    /// Whether the company is bankrupt: cash strictly below zero at the end of a day.
+    /// Returns whether the company is bankrupt: cash is strictly below the threshold at the end of a day.
     pub fn is_bankrupt(&self, params: &Params) -> bool {
         self.cash < params.run.bankruptcy_cash_threshold
     }
 }
 
-/// Cost of compute: units used on each plan times the unit cost of its model today, in dollars.
+/// Returns the cost of compute in dollars: units used on each plan times the unit cost of its model today.
 pub fn compute_cost(metered: &Metered, morning: &Morning, params: &Params) -> f64 {
     let tiers = match params.has_fault(Fault::ComputeOfOnePlan) {
         true => ByPlan([morning.core.tiers[Plan::A]; Plan::ALL.len()]),
@@ -41,8 +41,8 @@ pub fn compute_cost(metered: &Metered, morning: &Morning, params: &Params) -> f6
     Plan::ALL.into_iter().map(cost).sum()
 }
 
-/// Books the running costs of a day and returns their sum, in dollars. The general ones are booked even when
-/// they are zero, the targeted ones only when they are not.
+/// Books the running costs of a day and returns their sum, in dollars. General costs are booked even if they
+/// are zero, targeted ones only if they are not.
 pub fn pay_running_costs(
     finance: &mut Finance,
     metered: &Metered,

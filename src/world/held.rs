@@ -1,43 +1,43 @@
-//! Inputs that nobody in the company controls, held at what they were a week before: for days that are simulated again with
-//! one thing changed. A day that is played holds nothing.
+//! Inputs outside the player's control that are fixed at the values of a week before when days are simulated
+//! again with one change. Normal days fix none.
 
 use super::identifiers::ByGroup;
 use super::market::leads::LeadFactors;
 use super::product::service::HeldService;
 
-/// Which inputs are held from a day on, and at what. What is not named takes its course.
+/// The inputs that are fixed from a day on, with their values. Other inputs develop normally.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Held {
-    /// The first day on which they are held; lists begin with it.
+    /// The first fixed day; lists start with it.
     pub from: u32,
-    /// Rivals make no move.
+    /// Competitors make no moves.
     pub rivals: bool,
     /// Expectations and budgets do not drift.
     pub drift: bool,
-    /// Channels bring what they brought.
+    /// Channel yields stay constant.
     pub yields: bool,
-    /// The index of the economy stays where it is.
+    /// The economic index stays constant.
     pub economy: bool,
-    /// Factor of demand surges, day by day; empty where they take their course.
+    /// Factor of demand surges by day; empty if surges develop normally.
     pub surges: Vec<f64>,
-    /// Factor of the day of the month, day by day; empty where the calendar goes on.
+    /// Factor of the day of the month by day; empty if the calendar applies.
     pub month_days: Vec<f64>,
-    /// What strains the service, day by day; empty where it takes its course.
+    /// Load and random draws of the service by day; empty if the service develops normally.
     pub service: Vec<HeldService>,
 }
 
 impl Held {
-    /// Whether the drift that a day would bring is held back.
+    /// Returns whether the drift of a day is suppressed.
     pub fn holds_drift(&self, day: u32) -> bool {
         self.drift && day >= self.from
     }
 
-    /// What strains the service on a day, if that is held.
+    /// Returns the fixed service inputs of a day, if any.
     pub fn service_on(&self, day: u32) -> Option<HeldService> {
         self.on(day, &self.service)
     }
 
-    /// Puts held factors in place of those of a day.
+    /// Replaces lead factors of a day with fixed ones.
     pub fn hold_leads(&self, day: u32, weekday: f64, factors: &mut ByGroup<LeadFactors>) {
         let month_day = self.on(day, &self.month_days);
         for own in factors.0.iter_mut().filter(|own| **own != LeadFactors::default()) {
@@ -67,10 +67,9 @@ mod tests {
     use crate::state::World;
     use crate::test_kit::policy_p;
 
-    /// So much usage that the service of the company is overloaded.
     const LOAD: f64 = 1000.0;
 
-    /// A company on an eve, and the laws it lives under.
+    /// A company at the end of day `eve`, with its parameters and streams.
     fn company(eve: u32) -> (World, Params, Streams) {
         let (params, streams) = (Params::shipped(), Streams::new(9));
         let mut facts = Facts::default();
@@ -132,7 +131,7 @@ mod tests {
         let free = leads(Held::default());
         assert!(leads(Held { surges: vec![1.0], ..Held::default() }) * 2 < free);
         assert!(leads(Held { month_days: vec![0.25], ..Held::default() }) * 2 < free);
-        // A list that has ended holds nothing.
+        // A list that has ended fixes nothing.
         assert_eq!(leads(Held { surges: Vec::new(), ..Held::default() }), free);
     }
 
@@ -147,11 +146,11 @@ mod tests {
         assert_eq!(service(1.0, 60), free);
         assert!(service(LOAD, 60).overload > 0.0 && free.overload == 0.0);
         assert_ne!(service(1.0, 59).p95_ms, free.p95_ms);
-        // What is used is used.
+        // Usage itself does not change.
         assert_eq!(service(LOAD, 60).total_usage, free.total_usage);
     }
 
-    /// A lead who comes with and without overload decides the same: the service has no term in that choice.
+    /// A lead that arrives with and without overload makes the same decision, because the service does not affect it.
     #[test]
     fn the_service_has_no_part_in_what_a_lead_decides() {
         let (world, params, streams) = company(59);

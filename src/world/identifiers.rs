@@ -1,7 +1,7 @@
-//! Names of the things every part of the house speaks about: groups, plans, channels, months and weeks.
+//! Identifiers that all crates share: groups, plans and channels.
 //!
-//! These are plain identifiers without behaviour of the world, so that the console, the policies and the
-//! tools may use them without reaching into the simulator (`docs/architecture.md`).
+//! They contain no simulator behavior, so the console, policies and tools can use them without depending on
+//! the simulator (`docs/architecture.md`).
 
 use std::fmt;
 use std::ops::{Index, IndexMut};
@@ -22,22 +22,22 @@ impl Group {
     /// Number of groups.
     pub const COUNT: usize = 26;
 
-    /// All groups in their fixed order: S1 S2 S3 E1 E2 E3 D_S01..D_S10 D_E01..D_E10.
+    /// Returns all groups in their fixed order: S1 S2 S3 E1 E2 E3 D_S01..D_S10 D_E01..D_E10.
     pub fn all() -> impl DoubleEndedIterator<Item = Group> + ExactSizeIterator + Clone {
         (0..Self::COUNT as u8).map(Group)
     }
 
-    /// The group at a position of the fixed order, if there is one.
+    /// Returns the group at a position of the fixed order, if there is one.
     pub fn at(position: usize) -> Option<Group> {
         (position < Self::COUNT).then_some(Group(position as u8))
     }
 
-    /// The group with this identifier; case counts.
+    /// Returns the group with this identifier; case-sensitive.
     pub fn parse(id: &str) -> Option<Group> {
         GROUP_IDS.iter().position(|known| *known == id).and_then(Group::at)
     }
 
-    /// Identifier as tools and tables write it.
+    /// Identifier as used in tools and tables.
     pub fn id(self) -> &'static str {
         GROUP_IDS[self.index()]
     }
@@ -48,13 +48,13 @@ impl Group {
         usize::from(self.0)
     }
 
-    /// Companies negotiate; individuals decide alone.
+    /// Returns whether the group consists of enterprises, which negotiate. Individuals decide alone.
     #[inline]
     pub fn is_enterprise(self) -> bool {
         matches!(self.0, 3..=5 | 16..=25)
     }
 
-    /// The six initial groups are known from day 0; the others have to be discovered.
+    /// Returns whether the group is known from day 0. The six initial groups are; the others have to be discovered.
     pub fn initially_known(self) -> bool {
         self.0 < 6
     }
@@ -82,12 +82,12 @@ impl Plan {
     /// All plans in evaluation order.
     pub const ALL: [Plan; 3] = [Plan::A, Plan::B, Plan::C];
 
-    /// The plan with this letter; case counts.
+    /// Returns the plan with this letter; case-sensitive.
     pub fn parse(id: &str) -> Option<Plan> {
         Plan::ALL.into_iter().find(|plan| plan.id() == id)
     }
 
-    /// Letter of the plan.
+    /// Returns the letter of the plan.
     pub fn id(self) -> &'static str {
         ["A", "B", "C"][self.index()]
     }
@@ -98,7 +98,7 @@ impl Plan {
         self as usize
     }
 
-    /// The plan at a position of the evaluation order.
+    /// Returns the plan at a position of the evaluation order.
     pub fn at(position: usize) -> Option<Plan> {
         Plan::ALL.get(position).copied()
     }
@@ -136,12 +136,12 @@ impl Channel {
         Channel::ReferralProgram,
     ];
 
-    /// The channel with this identifier; case counts.
+    /// Returns the channel with this identifier; case-sensitive.
     pub fn parse(id: &str) -> Option<Channel> {
         Channel::ALL.into_iter().find(|channel| channel.id() == id)
     }
 
-    /// Identifier as tools and tables write it.
+    /// Identifier as used in tools and tables.
     pub fn id(self) -> &'static str {
         ["social_media", "search_ads", "linkedin", "content_marketing", "referral_program"][self.index()]
     }
@@ -152,7 +152,7 @@ impl Channel {
         self as usize
     }
 
-    /// The channel at a position of the channel order.
+    /// Returns the channel at a position of the channel order.
     pub fn at(position: usize) -> Option<Channel> {
         Channel::ALL.get(position).copied()
     }
@@ -188,17 +188,17 @@ macro_rules! table_by {
         pub struct $name<T>(pub [T; $count]);
 
         impl<T> $name<T> {
-            /// A table with one computed value per key.
+            /// Creates a table with one computed value per key.
             pub fn from_fn(mut value: impl FnMut($key) -> T) -> Self {
                 $name(std::array::from_fn(|position| value($key::at(position).expect("position is in range"))))
             }
 
-            /// Values in order.
+            /// Iterates over the values in order.
             pub fn iter(&self) -> std::slice::Iter<'_, T> {
                 self.0.iter()
             }
 
-            /// Keys and values in order.
+            /// Iterates over keys and values in order.
             pub fn pairs(&self) -> impl Iterator<Item = ($key, &T)> {
                 self.0.iter().enumerate().map(|(at, value)| ($key::at(at).expect("position is in range"), value))
             }

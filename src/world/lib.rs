@@ -1,7 +1,8 @@
-//! The simulator: pure, deterministic, without input or output, clock, SQL or prose.
+//! The simulator: pure and deterministic, without I/O, clock, SQL or text output.
 //!
-//! Read [`day::step_day`] first: it is the story of a day. Every mechanism it calls is a function over the parts
-//! it touches, and every formula a small pure function with check values as its test (`docs/mechanics/README.md`).
+//! Start with [`day::step_day`], which lists the steps of a day. Each mechanism is a function over the parts
+//! of the state it changes, and each formula is a small pure function whose tests contain check values
+//! (`docs/mechanics/README.md`).
 //!
 //! Modules from bottom to top: `identifiers`, `random`, `canonical`, `fault`, `params`; `quality`, `reputation`, `quota`, `series`;
 //! `settings`, `customers`; `events`, `morning`; `product`; `context`, `finance`; `retention`; `enterprise`; `market`; `held`,
@@ -33,6 +34,6 @@ pub mod state;
 #[cfg(any(test, feature = "test-kit"))]
 pub mod test_kit;
 
-/// Number of the mechanics. It rises with every change after which the same decisions can lead to another state, so
-/// that runs of earlier builds are refused with a reason instead of differing somewhere.
+/// Version of the mechanics. It increases with every change after which the same decisions can lead to a
+/// different state, so that runs of earlier builds are rejected with a reason instead of diverging.
 pub const MECHANICS: u32 = 1;

@@ -1,11 +1,12 @@
-//! What is frozen in the morning for the whole day.
+//! Values fixed at the start of a day.
 
 use super::identifiers::{ByGroup, ByPlan, Group, Plan};
 use super::settings::CoreSettings;
 use crate::customers::drift::Expectation;
 use crate::quality::delivered_quality;
 
-/// What is frozen in the morning: today's improvements, finished research, drift and rivals reach individuals tomorrow.
+/// Values fixed at the start of a day. Today's improvements, completed research, drift and competitor moves
+/// affect individuals from tomorrow.
 #[derive(Debug, Clone)]
 pub struct Morning {
     /// Day.
@@ -22,16 +23,16 @@ pub struct Morning {
     pub multipliers: ByPlan<f64>,
     /// Product quality by group before the multiplier.
     pub product: ByGroup<f64>,
-    /// Product quality before the multiplier and without what was done for single groups.
+    /// Product quality before the multiplier and without targeted development.
     pub shared_quality: f64,
-    /// What the market adds to curves.
+    /// The market's change of curves.
     pub expectations: ByGroup<Expectation>,
     /// Active subscriptions.
     pub subscribers: ByGroup<u32>,
 }
 
 impl Morning {
-    /// Quality delivered to a group on a plan, before anything today's service does to it.
+    /// Returns the quality delivered to a group on a plan, without today's service penalty.
     pub fn delivered(&self, group: Group, plan: Plan) -> f64 {
         delivered_quality(self.product[group], 0.0, 0.0, self.multipliers[plan])
     }
@@ -43,7 +44,7 @@ pub(crate) mod tests {
     use crate::params::Params;
     use crate::settings::Settings;
 
-    /// A morning with plain values; tests change what matters to them.
+    /// A morning with simple values; tests change what they need.
     pub(crate) fn morning(day: u32) -> Morning {
         let params = Params::shipped();
         Morning {

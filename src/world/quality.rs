@@ -5,27 +5,27 @@ use serde::Serialize;
 use crate::fault::Fault;
 use crate::params::{Ads, Params, PerceivedQuality, Quality, UsageQuota};
 
-/// Quality delivered to a group on a plan: (base + shared + group bonus) times the model's multiplier.
+/// Returns the quality delivered to a group on a plan: (base + shared + group bonus) times the model's multiplier.
 #[inline]
 pub fn delivered_quality(base: f64, shared_bonus: f64, group_bonus: f64, multiplier: f64) -> f64 {
     (base + shared_bonus + group_bonus) * multiplier
 }
 
-/// Share of a demand that a quota covers, 0..=1; no demand is always covered.
+/// Returns the share of a demand that a quota covers, 0..=1; 1 if there is no demand.
 #[inline]
 pub fn quota_factor(quota: f64, demand: f64, quality: &Quality) -> f64 {
-    // Divided in any case: several rows are calculated at once where nothing branches.
+    // The division is unconditional because code without branches is vectorized.
     let covered = (quota.max(0.0) / demand).clamp(quality.quota_factor_min, quality.quota_factor_max);
     if demand <= 0.0 { 1.0 } else { covered }
 }
 
-/// Quality lost to overload and outages today: 0.08 o + 0.20 outage (0 or 1).
+/// Returns the quality lost to overload and outages today: 0.08 o + 0.20 outage (0 or 1).
 #[inline]
 pub fn service_penalty(overload: f64, outage: bool, quality: &Quality) -> f64 {
     quality.service_overload_weight * overload + if outage { quality.service_outage_weight } else { 0.0 }
 }
 
-/// Bonus of a good relationship, malus of a bad one; the stored value as it is.
+/// Returns the bonus of a good relationship, or the penalty of a bad one, from the stored value.
 #[inline]
 pub fn relationship_bonus(relationship: f64, quality: &Quality) -> f64 {
     quality.relationship_quality_bonus_max
@@ -33,46 +33,47 @@ pub fn relationship_bonus(relationship: f64, quality: &Quality) -> f64 {
         * quality.relationship_scale
 }
 
-/// A relationship of exactly 0 is read as neutral by most rules (`docs/mechanics/product/quality.md#relationship-0`).
+/// Returns the relationship as most rules read it: exactly 0 counts as neutral
+/// (`docs/mechanics/product/quality.md#relationship-0`).
 #[inline]
 pub fn relationship_as_read(relationship: f64, quality: &Quality) -> f64 {
     if relationship == 0.0 { quality.fallback_relationship } else { relationship }
 }
 
-/// Bonus of tenure: 0.05 ln(1 + days / 30), 0 on the first day.
+/// Returns the tenure bonus: 0.05 ln(1 + days / 30), 0 on the first day.
 pub fn tenure_bonus(days_subscribed: u32, params: &Params) -> f64 {
     let Quality { stickiness_log_scale, stickiness_days_scale, .. } = params.quality;
     let scale = if params.has_fault(Fault::TenureInDays) { 1.0 } else { stickiness_days_scale };
     stickiness_log_scale * libm::log(1.0 + f64::from(days_subscribed) / scale)
 }
 
-/// Tenure bonuses by days subscribed, computed once: the logarithm is the slow part of a daily sweep.
+/// Tenure bonuses by days subscribed, computed once because the logarithm dominates a daily sweep.
 #[derive(Debug, Clone, Default)]
 pub struct TenureTable(Vec<f64>);
 
 impl TenureTable {
-    /// Bonuses of 0..=days.
+    /// Computes the bonuses of 0..=days.
     pub fn up_to(days: u32, params: &Params) -> TenureTable {
         TenureTable((0..=days).map(|day| tenure_bonus(day, params)).collect())
     }
 
-    /// The bonus after this many days.
+    /// Returns the bonus after this many days.
     #[inline]
     pub fn bonus(&self, days_subscribed: u32) -> f64 {
         self.0[days_subscribed as usize]
     }
 }
 
-/// Effective strength of in-app ads, 0..=1: ln(1 + 9 a) / ln 10, a = the summed levels clamped to 0..=1.
+/// Returns the effective strength of in-app ads, 0..=1: ln(1 + 9 a) / ln 10, a = the summed levels clamped to 0..=1.
 pub fn ads_effect(summed_strength: f64, ads: &Ads) -> f64 {
     let strength = summed_strength.clamp(ads.strength_min, ads.strength_max);
     libm::log(1.0 + ads.log_curve_k * strength) / libm::log(1.0 + ads.log_curve_k)
 }
 
-/// What a customer experiences, term by term.
+/// The terms of a customer's perceived quality.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct Experience {
-    /// Delivered quality less the service penalty where that counts.
+    /// Delivered quality minus the service penalty if it applies.
     pub delivered: f64,
     /// Relationship bonus.
     pub relationship: f64,
@@ -86,8 +87,8 @@ pub struct Experience {
     pub ads: f64,
 }
 
-/// Perceived quality: (delivered + relationship + tenure) quota - issues - ads in the release; the paper
-/// multiplies everything by the quota factor.
+/// Returns the perceived quality: (delivered + relationship + tenure) quota - issues - ads in the release. In
+/// the paper, all terms are multiplied by the quota factor.
 #[inline]
 pub fn perceived_quality(experience: Experience, form: PerceivedQuality) -> f64 {
     let Experience { delivered, relationship, tenure, quota, issues, ads } = experience;
@@ -97,7 +98,7 @@ pub fn perceived_quality(experience: Experience, form: PerceivedQuality) -> f64 
     }
 }
 
-/// What a quota is compared with: units a day, or of a whole billing period.
+/// Returns the demand that a quota is compared with: units per day, or per billing period.
 #[inline]
 pub fn quota_demand(daily_demand_today: f64, daily_rate: f64, params: &Params) -> f64 {
     let of_period = daily_rate * f64::from(params.billing.billing_period_days);
@@ -112,7 +113,7 @@ mod tests {
     use super::*;
 
     fn near(actual: f64, expected: f64) {
-        assert!((actual - expected).abs() < 1e-9, "{actual} instead of {expected}");
+        assert!((actual - expected).abs() < 1e-9, "got {actual}, expected {expected}");
     }
 
     #[test]

@@ -1,24 +1,24 @@
-//! Quotas: units a day and customer, whole or with a fraction.
+//! Quotas in units per day and customer, whole or fractional.
 
 use super::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore};
 
-/// From here on not every whole number of units is a number of its own.
+/// From here on, f64 cannot represent all integers.
 const TOO_MANY: f64 = 9.0e15;
 
-/// Marks canonical bytes of a quota with a fraction. No number of whole units is as large, and no quota is negative.
+/// Marks canonical bytes of a fractional quota. No number of whole units is as large, and no quota is negative.
 const FRACTION: u64 = 1 << 63;
 
-/// A quota: at least 0.
+/// A quota of at least 0.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Default)]
 pub struct Quota(f64);
 
 impl Quota {
-    /// A quota of so many units; none where that is no quota.
+    /// Creates a quota, or returns `None` if `units` is out of range.
     pub fn of(units: f64) -> Option<Quota> {
         (0.0..TOO_MANY).contains(&units).then_some(Quota(units.abs()))
     }
 
-    /// Units a day and customer.
+    /// Returns the units per day and customer.
     pub fn units(self) -> f64 {
         self.0
     }
@@ -30,7 +30,7 @@ impl From<u32> for Quota {
     }
 }
 
-/// Whole quotas have the bytes of whole numbers.
+/// Whole quotas have the canonical bytes of integers.
 impl Canonical for Quota {
     fn feed(&self, hasher: &mut CanonicalHasher) {
         let bytes = match self.0.fract() == 0.0 {

@@ -1,12 +1,12 @@
-//! Named random streams: every draw of the world goes through here.
+//! Named random streams, the source of all random draws of the world.
 //!
-//! A stream is derived from (run seed, part, entity keys) by hashing into a ChaCha8 key, so parts are
-//! independent: a draw in one never shifts another, work can be split over threads, and two runs with the same
-//! seed share their luck whatever their players decide (`docs/mechanics/randomness.md`).
+//! A stream is derived from (run seed, part, entity keys) by hashing them into a ChaCha8 key. Streams are
+//! independent: a draw in one never affects another, work can be distributed among threads, and two runs with
+//! the same seed have the same draws regardless of the players' decisions (`docs/mechanics/randomness.md`).
 //!
-//! Each continuous draw uses exactly one 64-bit word, so a customer's traits stand at fixed positions. Normal
+//! Each continuous draw uses exactly one 64-bit word, so a customer's traits are at fixed positions. Normal
 //! numbers come from the inverse distribution function (algorithm AS 241 of Wichura), which needs one word,
-//! no rejection, and no more than a logarithm.
+//! no rejection, and at most one logarithm.
 
 mod numpy_stream;
 mod quantile;
@@ -21,7 +21,7 @@ pub use quantile::inverse_normal;
 
 macro_rules! parts {
     ($($(#[$doc:meta])* $name:ident = $text:literal,)*) => {
-        /// A part of the world that draws, with the keys its streams are opened with.
+        /// A part of the world that makes random draws, with the keys of its streams.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         #[repr(usize)]
         pub enum Part { $($(#[$doc])* $name,)* }
@@ -31,7 +31,7 @@ macro_rules! parts {
             pub const ALL: &'static [Part] = &[$(Part::$name,)*];
 
 
-            /// Its name, which its streams are derived from.
+            /// Returns its name, from which its streams are derived.
             pub fn name(self) -> &'static str {
                 match self { $(Part::$name => $text,)* }
             }
@@ -60,15 +60,15 @@ parts! {
     ReputationEvent = "reputation_event",
     /// (group, n): traits and persona of a customer.
     Traits = "traits",
-    /// (group, n): how the customer came.
+    /// (group, n): source of the customer.
     LeadSource = "lead_source",
-    /// (group, n): misjudged quality at the first decision.
+    /// (group, n): error in judging quality at the first decision.
     LeadNoise = "lead_noise",
     /// (day, group): number of leads.
     LeadCount = "lead_count",
     /// (group, month): monthly change of the channel yields.
     LeadRateDrift = "lead_rate_drift",
-    /// (attempt): whether market research finds a group, and which.
+    /// (attempt): whether market research discovers a group, and which.
     MarketResearch = "market_research",
     /// (group, level, field): error of an estimate.
     Insight = "insight",
@@ -78,25 +78,25 @@ parts! {
     Macro = "macro",
     /// (day): test, size, feedback and drains of a competitor event.
     CompetitorEvent = "competitor_event",
-    /// (thread, turn): days until a company answers an offer.
+    /// (thread, turn): days until an enterprise replies to an offer.
     ReplyDelay = "reply_delay",
-    /// (group, n): misjudged quality of a company in its first negotiation.
+    /// (group, n): error of an enterprise in judging quality in its first negotiation.
     NegotiationNoise = "negotiation_noise",
-    /// (day, group, n): whether a company asks for another plan.
+    /// (day, group, n): whether an enterprise requests another plan.
     PlanChange = "plan_change",
-    /// (day): misjudged size, names, points of view and engagement of posts on rivals.
+    /// (day): estimated size, names, points of view and engagement of posts about competitors.
     CompetitorPosts = "competitor_posts",
-    /// (day): rounds and engagement of posts on the economy; day 0: the first round.
+    /// (day): rounds and engagement of posts about the economy; day 0: the first round.
     MacroPosts = "macro_posts",
-    /// (day): who posts, then tone and engagement of each post.
+    /// (day): authors, then tone and engagement of each post.
     CustomerPosts = "customer_posts",
-    /// (post, group): how often a post of the player is seen.
+    /// (post, group): views of a post of the player.
     CeoViews = "ceo_views",
-    /// (post, group): who comments on it, and engagement of the comment.
+    /// (post, group): author of a comment, and its engagement.
     CeoReply = "ceo_reply",
-    /// (post): the words of a post; never touches a number of the world.
+    /// (post): the wording of a post; never affects a number of the world.
     Voice = "voice",
-    /// (group, n): which named profile a customer has.
+    /// (group, n): named profile of a customer.
     PersonaTemplate = "persona_template",
 }
 
@@ -105,11 +105,10 @@ parts! {
 pub struct Streams {
     seed: u64,
     keys: PartKeys,
-    /// The last day whose luck was the run's own, and the keys it was drawn with; none where the luck was never redrawn.
+    /// The last day that uses the run's original keys, and those keys; `None` if no draws were replaced.
     own: Option<(u32, PartKeys)>,
 }
 
-/// A key for each part.
 type PartKeys = Vec<[u8; 32]>;
 
 impl Streams {
@@ -118,26 +117,26 @@ impl Streams {
         Streams { seed, keys: part_keys("novamind random streams, version 1", &[seed]), own: None }
     }
 
-    /// The same run with other luck after a day: equal salts give equal luck. What was drawn up to that day and is read
-    /// again stays, see [`Streams::open_since`].
+    /// Returns the streams of the same run with different draws after a day: equal salts give equal draws.
+    /// Draws up to that day that are read again stay the same, see [`Streams::open_since`].
     pub fn redrawn(&self, salt: u64, last_own_day: u32) -> Self {
         let keys = part_keys("novamind random streams, redrawn, version 1", &[self.seed, salt]);
         let own = self.own.clone().unwrap_or_else(|| (last_own_day, self.keys.clone()));
         Streams { seed: self.seed, keys, own: Some(own) }
     }
 
-    /// The seed these streams were derived from.
+    /// Returns the seed from which these streams are derived.
     pub fn seed(&self) -> u64 {
         self.seed
     }
 
-    /// The stream of a part for up to four entity keys. Equal arguments always give the same stream.
+    /// Opens the stream of a part for up to four entity keys. Equal arguments always give the same stream.
     pub fn open<const KEYS: usize>(&self, part: Part, entity: [u64; KEYS]) -> Stream {
         Stream::of(self.key(part, entity))
     }
 
-    /// The stream of something that is drawn on a day and read again on later ones. Where luck was redrawn after that day,
-    /// it keeps the run's own.
+    /// Opens the stream of a value that is drawn on a day and read again later. If draws were replaced after
+    /// that day, it uses the original keys.
     pub fn open_since<const KEYS: usize>(&self, day: u32, part: Part, entity: [u64; KEYS]) -> Stream {
         let keys = match &self.own {
             Some((last, own)) if day <= *last => own,
@@ -150,7 +149,7 @@ impl Streams {
         key_of(&self.keys[part as usize], entity)
     }
 
-    /// Keys of the streams of a part for many entities; [`Stream::of`] opens one as [`Streams::open`] does.
+    /// Returns the stream keys of a part for many entities; [`Stream::of`] opens each as [`Streams::open`] does.
     pub fn keys<const KEYS: usize>(&self, part: Part, entities: &[[u64; KEYS]]) -> Vec<StreamKey> {
         together(
             entities,
@@ -161,7 +160,7 @@ impl Streams {
         )
     }
 
-    /// The first word of the stream of each of many entities: all there is to know of streams of one draw.
+    /// Returns the first word of the stream of each entity, for streams with a single draw.
     pub fn first_words<const KEYS: usize>(&self, part: Part, entities: &[[u64; KEYS]]) -> Vec<Word> {
         together(
             entities,
@@ -191,7 +190,7 @@ fn key_of<const KEYS: usize>(part: &[u8; 32], entity: [u64; KEYS]) -> StreamKey 
     StreamKey(*blake3::keyed_hash(part, &bytes[..8 * KEYS]).as_bytes())
 }
 
-/// Works on entities eight by eight where the processor can, and one by one where it cannot or for the last few.
+/// Processes entities in batches of eight if the processor supports it, otherwise and for the remainder one by one.
 fn together<E: Copy, R>(
     entities: &[E],
     single: impl Fn(E) -> R,
@@ -209,7 +208,7 @@ fn together<E: Copy, R>(
     results
 }
 
-/// What a stream is opened with.
+/// The key of a stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StreamKey([u8; 32]);
 
@@ -223,7 +222,7 @@ impl StreamKey {
     }
 }
 
-/// 64 random bits: one draw of a stream.
+/// A word of 64 random bits: one draw of a stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Word(u64);
 
@@ -248,17 +247,17 @@ impl Word {
     }
 }
 
-/// One open stream. Draws follow each other; nothing is kept when it is dropped.
+/// An open stream. Its position is not stored when it is dropped.
 #[derive(Debug, Clone)]
 pub struct Stream(ChaCha8Rng);
 
 impl Stream {
-    /// The stream with this key.
+    /// Opens the stream with this key.
     pub fn of(key: StreamKey) -> Stream {
         Stream(ChaCha8Rng::from_seed(key.0))
     }
 
-    /// The next 64 bits.
+    /// Returns the next 64 bits.
     pub fn word(&mut self) -> Word {
         Word(self.0.next_u64())
     }
@@ -273,7 +272,7 @@ impl Stream {
         self.word().between(low, high)
     }
 
-    /// Uniform whole number in low..=high. The bias of the multiplication is below 2^-32.
+    /// Uniform integer in low..=high. The bias of the multiplication is below 2^-32.
     pub fn integer(&mut self, low: u32, high: u32) -> u32 {
         let span = u64::from(high - low) + 1;
         low + ((u128::from(self.0.next_u64()) * u128::from(span)) >> 64) as u32
@@ -309,7 +308,7 @@ impl Stream {
         libm::exp(self.normal(mu, sigma))
     }
 
-    /// Poisson number; 0 when the mean is not positive.
+    /// Poisson number; 0 if the mean is not positive.
     pub fn poisson(&mut self, mean: f64) -> u64 {
         if mean < 10.0 {
             poisson_by_inversion(mean, self.uniform())
@@ -318,7 +317,7 @@ impl Stream {
         }
     }
 
-    /// Fills a slice with raw words, one per position: for blocks where each customer has a fixed place.
+    /// Fills a slice with raw words, one per position, for blocks in which each customer has a fixed position.
     pub fn fill(&mut self, words: &mut [u32]) {
         const PIECE: usize = 64;
         let mut bytes = [0u8; 4 * PIECE];
@@ -332,7 +331,7 @@ impl Stream {
     }
 }
 
-/// True with probability `p`, decided by a raw word of [`Stream::fill`] (resolution 2^-32).
+/// Returns true with probability `p`, decided by a raw word of [`Stream::fill`] (resolution 2^-32).
 #[inline]
 pub fn word_below(word: u32, p: f64) -> bool {
     f64::from(word) < p * 4_294_967_296.0
@@ -344,7 +343,7 @@ fn poisson_by_inversion(mean: f64, u: f64) -> u64 {
     }
     let (mut count, mut term) = (0u64, libm::exp(-mean));
     let mut below = term;
-    // The tail beyond 200 has no mass that a double could hold for means below 10.
+    // For means below 10, the probability beyond 200 is below the precision of f64.
     while u >= below && count < 200 {
         count += 1;
         term *= mean / count as f64;
@@ -353,7 +352,7 @@ fn poisson_by_inversion(mean: f64, u: f64) -> u64 {
     count
 }
 
-/// Transformed rejection with squeeze (Hörmann 1993, algorithm PTRS), exact for means from 10 on.
+/// Transformed rejection with squeeze (Hörmann 1993, algorithm PTRS), exact for means of 10 and above.
 fn poisson_by_rejection(mean: f64, stream: &mut Stream) -> u64 {
     let (root, log_mean) = (mean.sqrt(), libm::log(mean));
     let b = 0.931 + 2.53 * root;
@@ -430,7 +429,7 @@ mod tests {
 
     #[test]
     fn the_first_bits_never_change() {
-        // Frozen: every recorded run depends on these bits.
+        // Frozen, because every recorded run depends on these bits.
         let mut stream = Streams::new(42).open(Part::Macro, [1]);
         assert_eq!(stream.uniform().to_bits(), FIRST_UNIFORM);
         assert_eq!(stream.standard_normal().to_bits(), SECOND_NORMAL);
@@ -448,7 +447,7 @@ mod tests {
         assert_eq!(since(&one, 30), since(&streams, 30));
         assert_ne!(since(&one, 31), since(&streams, 31));
         assert_eq!(since(&streams, 31), streams.open(Part::InvoluntaryMu, [3, 1]).word());
-        // Redrawn again, what was the run's own stays the run's own.
+        // Replacing draws again keeps the original keys of earlier days.
         assert_eq!(since(&one.redrawn(7, 60), 30), since(&streams, 30));
     }
 
@@ -471,7 +470,7 @@ mod tests {
             let (mean, std) = moments((0..100_000).map(|_| stream.poisson(expected) as f64));
             let standard_error = (expected / 100_000.0).sqrt();
             assert!((mean - expected).abs() < 4.5 * standard_error, "mean of {expected}: {mean}");
-            assert!((std / expected.sqrt() - 1.0).abs() < 0.015, "spread of {expected}: {std}");
+            assert!((std / expected.sqrt() - 1.0).abs() < 0.015, "standard deviation of {expected}: {std}");
         }
         assert_eq!(stream.poisson(0.0), 0);
         assert_eq!(stream.poisson(-1.0), 0);

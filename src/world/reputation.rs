@@ -1,4 +1,5 @@
-//! Reputation: what subscribers say, how it spreads, and what a departure costs (docs/mechanics/market/reputation.md).
+//! Reputation: daily contributions of subscribers, spillover, and damage by departures
+//! (docs/mechanics/market/reputation.md).
 
 use std::ops::AddAssign;
 
@@ -9,12 +10,12 @@ use crate::fault::Fault;
 use crate::identifiers::{ByGroup, Group};
 use crate::params::{Params, Reputation};
 
-/// What some subscribers contribute to the reputation of their group today.
+/// Contributions of some subscribers to their group's reputation today.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Mood {
     /// Sum of the contributions (`docs/mechanics/market/reputation.md`).
     pub sum: f64,
-    /// How many contributed.
+    /// Number of contributors.
     pub count: u32,
 }
 
@@ -33,67 +34,67 @@ pub struct ReputationBook {
 
 canonical! { ReputationBook { values } }
 
-/// What moved a reputation.
+/// The cause of a change of reputation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ReputationCause {
-    /// Individuals found nothing acceptable and left.
+    /// Individuals cancelled because no plan was acceptable.
     Departures,
-    /// A company was lost.
+    /// An enterprise was lost.
     LostCompany,
-    /// What the group's own subscribers say: their contributions today.
+    /// Today's contributions of the group's own subscribers.
     Mood(Mood),
-    /// What subscribers of another group say.
+    /// Contributions of subscribers of another group.
     SpillOver(SpillOver),
 }
 
-/// The share of a group's change that reaches another: change × weight × factor.
+/// The share of a group's change that affects another: change × weight × factor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpillOver {
-    /// Where it comes from.
+    /// The group whose reputation changed.
     pub source: Group,
-    /// Change of the source by the mood of its own subscribers.
+    /// Change of the source by its own subscribers.
     pub change: f64,
     /// Weight of the source on the group.
     pub weight: f64,
-    /// What all spill-over is multiplied by.
+    /// Factor of all spillover.
     pub factor: f64,
 }
 
-/// Changes that one mechanism made to a reputation, one after the other, and what they came to.
+/// Consecutive changes that one mechanism made to a reputation, and their result.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReputationWrite<'a> {
-    /// Whose reputation it is.
+    /// The group.
     pub group: Group,
-    /// Which mechanism it was.
+    /// The mechanism.
     pub cause: ReputationCause,
-    /// What was added, before limits.
+    /// Changes before clamping.
     pub changes: &'a [f64],
-    /// Reputation before the first of them.
+    /// Reputation before the first change.
     pub before: f64,
-    /// Reputation after the last of them.
+    /// Reputation after the last change.
     pub after: f64,
 }
 
-/// Who is told of each write.
+/// A callback for changes of reputation.
 pub type OnWrite<'a> = dyn FnMut(&ReputationWrite<'_>) + 'a;
 
 impl ReputationBook {
-    /// Everybody starts with the same reputation; groups without a stored one read as it too.
+    /// Returns the reputations of day 0, which are equal for all groups.
     pub fn opening(params: &Params) -> ReputationBook {
         ReputationBook { values: ByGroup::from_fn(|_| params.initial.initial_reputation) }
     }
 
-    /// Reputation of a group.
+    /// Returns the reputation of a group.
     pub fn of(&self, group: Group) -> f64 {
         self.values[group]
     }
 
-    /// Sets a reputation as it is; for tests and given states.
+    /// Sets a reputation without clamping; for tests and given states.
     pub fn set(&mut self, group: Group, value: f64) {
         self.values[group] = value;
     }
 
-    /// Adds a change, clamps to 0..=1 and then to the floor.
+    /// Adds a change, clamps the result to 0..=1 and applies the minimum.
     pub fn move_by(&mut self, group: Group, change: f64, params: &Params) {
         let law = &params.reputation;
         let moved = (self.values[group] + change).clamp(law.reputation_clamp_min, law.reputation_clamp_max);
@@ -101,7 +102,7 @@ impl ReputationBook {
         self.values[group] = if has_floor { moved.max(law.reputation_floor) } else { moved };
     }
 
-    /// Adds changes, one after the other, and tells what they came to.
+    /// Adds changes in order and reports the result to `told`.
     pub fn write(
         &mut self,
         (group, cause): (Group, ReputationCause),
@@ -115,45 +116,46 @@ impl ReputationBook {
     }
 }
 
-/// What one subscriber contributes: 0.0005 S, twice as much when S is negative.
+/// Returns the contribution of one subscriber: 0.0005 S, doubled if S is negative.
 #[inline]
 pub fn contribution(satisfaction: f64, law: &Reputation) -> f64 {
     let weight = if satisfaction < 0.0 { law.negative_satisfaction_multiplier } else { 1.0 };
     law.base_rep_per_customer * weight * satisfaction
 }
 
-/// Change of a group's reputation that the contributions of today call for: (sum / m) log2(m), m = max(count, 2).
+/// Returns the change of a group's reputation from today's contributions, before the threshold: (sum / m)
+/// log2(m), m = max(count, 2).
 pub fn called_change(mood: &Mood, law: &Reputation) -> f64 {
     let size = f64::from(mood.count.max(law.min_group_size));
     mood.sum / size * libm::log2(size)
 }
 
-/// The change that is made; nothing when it is too small.
+/// Returns the change that is applied, or `None` if it is below the threshold.
 pub fn daily_change(mood: &Mood, law: &Reputation) -> Option<f64> {
     let change = called_change(mood, law);
     (change.abs() >= law.daily_delta_min_abs).then_some(change)
 }
 
-/// What the change of a group does to another one that is known.
+/// The spillover of a group's change to another known group.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Spill {
     /// The group that changed.
     pub from: Group,
-    /// The one that hears of it.
+    /// The affected group.
     pub to: Group,
-    /// Change of the group that it is made of.
+    /// Change of the source group.
     pub source_change: f64,
-    /// Weight of the one for the other.
+    /// Weight of the source group for the affected group.
     pub weight: f64,
-    /// What all spill-over is multiplied by.
+    /// Factor of all spillover.
     pub factor: f64,
-    /// Change of the reputation, if it counts.
+    /// Change of the reputation, applied if `counts` is true.
     pub change: f64,
-    /// Whether there is a weight, and the change is large enough.
+    /// Whether the weight is positive and the change is large enough.
     pub counts: bool,
 }
 
-/// What a change of a group does to another one.
+/// Returns the spillover of a group's change to another group.
 pub fn spill(change: f64, from: Group, to: Group, params: &Params) -> Spill {
     let law = &params.reputation;
     let weight = params.reputation_weight(from, to);
@@ -164,26 +166,26 @@ pub fn spill(change: f64, from: Group, to: Group, params: &Params) -> Spill {
     Spill { from, to, source_change, weight, factor, change, counts }
 }
 
-/// Scale of a single event in a group of this many subscribers: log2(k) / k, k = max(count, 2).
+/// Returns the scale of a single event in a group of this many subscribers: log2(k) / k, k = max(count, 2).
 pub fn event_scale(subscribers: u32, law: &Reputation) -> f64 {
     let size = f64::from(subscribers.max(law.event_scale_min_group_size));
     libm::log2(size) / size
 }
 
-/// Damage of an individual's cancellation: 0.000375 (0.5 + U) (1 + 20 min(S, 0)^2) log2(k) / k.
+/// Returns the damage by an individual's cancellation: 0.000375 (0.5 + U) (1 + 20 min(S, 0)^2) log2(k) / k.
 pub fn cancel_damage(satisfaction: f64, subscribers: u32, u: f64, law: &Reputation) -> f64 {
     let bad = satisfaction.min(0.0);
     event_damage(subscribers, u, law) * (1.0 + law.cancel_negative_satisfaction_coef * bad * bad)
 }
 
-/// Damage of a lost company: the same without its satisfaction.
+/// Returns the damage by a lost enterprise: the same without the satisfaction term.
 pub fn event_damage(subscribers: u32, u: f64, law: &Reputation) -> f64 {
     law.reputation_quality_cancel_damage
         * (law.cancel_damage_noise_offset + u)
         * event_scale(subscribers, law)
 }
 
-/// Moves reputations by the moods of today; each change spreads to the other known groups by their weights.
+/// Changes reputations by today's contributions; each change spills over to the other known groups by their weights.
 pub fn contribute(
     book: &mut ReputationBook,
     moods: &ByGroup<Mood>,
@@ -238,7 +240,7 @@ mod tests {
     fn assert_book(book: &ReputationBook, expected: &[(&str, f64)]) {
         for &(id, value) in expected {
             let own = book.of(group(id));
-            assert!((own / value - 1.0).abs() < 1e-9, "{id}: {own} instead of {value}");
+            assert!((own / value - 1.0).abs() < 1e-9, "{id}: got {own}, expected {value}");
         }
     }
 

@@ -1,5 +1,5 @@
-//! Recorded series: what happened in the released simulator and does not depend on what a company does. A scenario
-//! replays it in place of draws (`docs/mechanics/randomness.md#recorded-series`).
+//! Recorded series of the released simulator that do not depend on the company's actions. A scenario can
+//! replay them instead of drawing (`docs/mechanics/randomness.md#recorded-series`).
 
 #[cfg(test)]
 mod tests;
@@ -27,16 +27,16 @@ pub struct Series {
 /// A recorded competitor event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GivenEvent {
-    /// Size before the growth over the run.
+    /// Size before growth over the run.
     pub size: f64,
-    /// Share of the shared bank that rivals could copy.
+    /// Share of the shared bank that competitors could copy.
     pub u: f64,
 }
 
 /// A recorded demand surge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GivenSurge {
-    /// Its length in days.
+    /// Length in days.
     pub days: u32,
     /// Factor on leads.
     pub multiplier: f64,
@@ -44,11 +44,11 @@ pub struct GivenSurge {
 
 static SEED_42: LazyLock<Series> = LazyLock::new(|| {
     let text = include_str!("../../configs/series/seed42.toml");
-    toml::from_str(text).expect("the shipped series is tested")
+    toml::from_str(text).expect("the bundled series is valid")
 });
 
 impl Params {
-    /// The recorded series that this world replays, if it does.
+    /// Returns the recorded series that this world replays, if any.
     pub fn replayed_series(&self) -> Option<&'static Series> {
         match self.series.replayed {
             Replayed::None => None,
@@ -57,36 +57,36 @@ impl Params {
     }
 }
 
-/// Each reading is none beyond the end of the record: then the world draws as usual.
+/// Each method returns `None` beyond the end of the record; the world then draws as usual.
 impl Series {
-    /// Hidden index of the economy on a day.
+    /// Returns the hidden index of the economy on a day.
     pub fn pmi(&self, day: u32) -> Option<f64> {
         self.pmi.get(day.checked_sub(1)? as usize).copied()
     }
 
-    /// The competitor event of a day, if there was one.
+    /// Returns the competitor event of a day, if there was one.
     pub fn competitor_event(&self, day: u32) -> Option<Option<GivenEvent>> {
         let found = self.competitor_events.iter().find(|(own, _, _)| *own == day);
         self.pmi(day).map(|_| found.map(|&(_, size, u)| GivenEvent { size, u }))
     }
 
-    /// The demand surge that was drawn for a day, if there was one.
+    /// Returns the demand surge that was drawn for a day, if there was one.
     pub fn demand_surge(&self, day: u32) -> Option<Option<GivenSurge>> {
         let found = self.demand_surges.iter().find(|(own, _, _)| *own == day);
         self.pmi(day).map(|_| found.map(|&(_, days, multiplier)| GivenSurge { days, multiplier }))
     }
 
-    /// The group that an attempt of market research found, if any; attempts count from 0.
+    /// Returns the group that an attempt of market research discovered, if any; attempts count from 0.
     pub fn attempt(&self, earlier: u32) -> Option<Option<Group>> {
         self.market_research.get(earlier as usize).map(|id| Group::parse(id))
     }
 
-    /// Rate of failed payments of a group in a month, which counts from 0.
+    /// Returns the rate of failed payments of a group in a month, counted from 0.
     pub fn involuntary_rate(&self, group: Group, month: u32) -> Option<f64> {
         self.involuntary_churn.get(&group)?.get(month as usize).copied()
     }
 
-    /// Leads a day for 1,000 dollars a day from a month on, which counts from 1.
+    /// Returns the leads a day per 1,000 dollars a day in a month, counted from 1.
     pub fn channel_yield(&self, channel: Channel, group: Group, month: u32) -> Option<f64> {
         self.channel_yields.get(&channel)?.get(&group)?.get(month.checked_sub(1)? as usize).copied()
     }

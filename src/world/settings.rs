@@ -1,7 +1,7 @@
-//! What the player has set: the levers of the company (`docs/interfaces/tools.md`).
+//! The player's settings (`docs/interfaces/tools.md`).
 //!
-//! A setting made between two days is first read on the next day and stays until it is changed again, so the
-//! world needs only the newest values; their history is in the tables.
+//! A setting made between two days takes effect on the next day and stays until it is changed. The world
+//! stores only current values; their history is in the tables.
 
 use indexmap::IndexMap;
 use serde::Serialize;
@@ -15,7 +15,7 @@ use super::quota::Quota;
 pub type PerGroup = IndexMap<Group, f64>;
 /// Dollars per plan.
 pub type PerPlan = IndexMap<Plan, f64>;
-/// Dollars (or strengths) per customer number; numbers that exist nowhere are allowed and act on nobody.
+/// Dollars (or strengths) per customer number; unassigned numbers are allowed and have no effect.
 pub type PerCustomer = IndexMap<i64, f64>;
 
 /// All settings in force.
@@ -31,7 +31,7 @@ pub struct Settings {
     pub ads_strength: AdsStrength,
     /// Advertising budget, dollars a day.
     pub targeted_ads: TargetedAds,
-    /// Extra operations, dollars a day.
+    /// Additional operations, dollars a day.
     pub targeted_operations: TargetedOperations,
     /// Development for single groups, dollars a day.
     pub targeted_development: TargetedDevelopment,
@@ -54,10 +54,10 @@ pub struct CoreSettings {
     pub capacity_tier: u8,
 }
 
-/// Ongoing discounts, dollars a month and seat; scopes add up, floored at 0.
+/// Ongoing discounts, dollars a month and seat; scopes add up, with a minimum of 0.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Promotion {
-    /// For everybody.
+    /// For all subscribers.
     pub global: f64,
     /// For subscribers of a group.
     pub by_group: PerGroup,
@@ -67,7 +67,7 @@ pub struct Promotion {
     pub by_group_plan: IndexMap<Group, PerPlan>,
 }
 
-/// Discounts of a lead's choice and first bill, dollars a month; scopes add up, floored at 0.
+/// Discounts for a lead's choice and first bill, dollars a month; scopes add up, with a minimum of 0.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct LeadPromotion {
     /// For every lead.
@@ -80,10 +80,10 @@ pub struct LeadPromotion {
     pub by_channel_group: IndexMap<Channel, PerGroup>,
 }
 
-/// In-app advertising load, each level 0..=1; levels add up and are clamped.
+/// In-app advertising, each level 0..=1; levels add up and are clamped.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct AdsStrength {
-    /// For everybody.
+    /// For all subscribers.
     pub global: f64,
     /// For a group.
     pub by_group: PerGroup,
@@ -98,7 +98,7 @@ pub struct TargetedAds {
     pub targeted_spend: IndexMap<Channel, PerGroup>,
 }
 
-/// Operations aimed at a part of the open issues, dollars a day; each entry is a pool of its own.
+/// Operations targeted at a part of the open issues, dollars a day; each entry is a separate pool.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct TargetedOperations {
     /// Issues of a group.
@@ -111,7 +111,7 @@ pub struct TargetedOperations {
     pub by_customer: PerCustomer,
 }
 
-/// Development aimed at groups, dollars a day.
+/// Development targeted at groups, dollars a day.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct TargetedDevelopment {
     /// By group.
@@ -144,7 +144,7 @@ fn opening_quotas(params: &Params) -> ByPlan<Quota> {
 }
 
 impl Settings {
-    /// The settings of day 0.
+    /// Returns the settings of day 0.
     pub fn opening(params: &Params) -> Settings {
         let initial = &params.initial;
         let core = CoreSettings {
@@ -168,7 +168,7 @@ impl Settings {
 }
 
 impl Settings {
-    /// The largest discount that any entry of a family gives, dollars a month.
+    /// Returns the largest discount of any entry, dollars a month.
     pub fn largest_discount(&self) -> f64 {
         let ongoing = &self.promotion;
         let of_leads = &self.lead_promotion;
@@ -202,7 +202,7 @@ impl Settings {
 }
 
 impl Promotion {
-    /// Sum of the scopes for a customer who is on, or judges, a plan: P(i, g, p), not yet floored.
+    /// Returns the sum of the scopes for a customer and a plan: P(i, g, p), before the minimum of 0.
     pub fn sum(&self, customer: u32, group: Group, plan: Plan) -> f64 {
         self.global
             + entry(&self.by_group, &group)
@@ -212,7 +212,7 @@ impl Promotion {
 }
 
 impl LeadPromotion {
-    /// Sum of the scopes for a lead: LP(g, ch), not yet floored; the channel scopes need a channel.
+    /// Returns the sum of the scopes for a lead: LP(g, ch), before the minimum of 0. Channel scopes need a channel.
     pub fn sum(&self, group: Group, channel: Option<Channel>) -> f64 {
         let by_channel = channel.map_or(0.0, |channel| {
             entry(&self.by_channel, &channel)
@@ -223,36 +223,36 @@ impl LeadPromotion {
 }
 
 impl AdsStrength {
-    /// Sum of the levels that decisions and negotiations see: global + group, not yet clamped.
+    /// Returns the level that decisions and negotiations use: global + group, not clamped.
     pub fn for_group(&self, group: Group) -> f64 {
         self.global + entry(&self.by_group, &group)
     }
 
-    /// What a customer's own level adds.
+    /// Returns the additional level of a customer.
     pub fn for_customer(&self, customer: u32) -> f64 {
         entry(&self.by_customer, &i64::from(customer))
     }
 
-    /// Whether anybody may be shown ads at all.
+    /// Returns whether any customer may see ads.
     pub fn is_used(&self) -> bool {
         self.global > 0.0 || !self.by_group.is_empty() || !self.by_customer.is_empty()
     }
 }
 
 impl TargetedAds {
-    /// Budget of a pair, dollars a day.
+    /// Returns the budget of a channel and group, dollars a day.
     pub fn spend(&self, channel: Channel, group: Group) -> f64 {
         self.targeted_spend.get(&channel).map_or(0.0, |groups| entry(groups, &group))
     }
 
-    /// Sum of the matrix, dollars a day.
+    /// Returns the sum over channels and groups, dollars a day.
     pub fn total(&self) -> f64 {
         self.targeted_spend.values().map(total).sum()
     }
 }
 
 impl TargetedOperations {
-    /// Sum of all scopes, dollars a day.
+    /// Returns the sum of all scopes, dollars a day.
     pub fn total(&self) -> f64 {
         total(&self.by_group)
             + total(&self.by_plan)
@@ -262,13 +262,13 @@ impl TargetedOperations {
 }
 
 impl TargetedDevelopment {
-    /// Sum over groups, dollars a day.
+    /// Returns the sum over groups, dollars a day.
     pub fn total(&self) -> f64 {
         total(&self.targeted_spend)
     }
 }
 
-/// A family of settings after a call of its tool.
+/// A family of settings after a tool call.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SettingsChange {
     /// A row of `config_history`.
@@ -288,8 +288,8 @@ pub enum SettingsChange {
 }
 
 impl SettingsChange {
-    /// The family as JSON, with the field names of `config_overrides.settings_json`; none for the core settings,
-    /// which have a table of their own.
+    /// Returns the family as JSON with the field names of `config_overrides.settings_json`, or `None` for the
+    /// core settings, which have their own table.
     pub fn family(&self) -> Option<serde_json::Value> {
         let value = match self {
             SettingsChange::Core(_) => return None,

@@ -1,4 +1,4 @@
-//! The whole hidden truth of a company and its market.
+//! The complete hidden state of a company and its market.
 
 use super::canonical::{Canonical, CanonicalHasher, canonical, hash_of};
 use super::customers::Customers;
@@ -17,15 +17,15 @@ use super::settings::SettingsChange;
 pub struct World {
     /// Last simulated day, 0 before the first.
     pub day: u32,
-    /// Last day of the run; the competitors grow towards it.
+    /// Last day of the run; competitors' moves grow towards it.
     pub total_days: u32,
-    /// What the player has set.
+    /// The player's settings.
     pub settings: Settings,
-    /// Money.
+    /// Cash.
     pub finance: Finance,
-    /// What development has achieved.
+    /// The product and its development.
     pub product: Product,
-    /// Who the customers are.
+    /// Customers.
     pub customers: Customers,
     /// Support issues.
     pub issue_desk: IssueDesk,
@@ -39,7 +39,7 @@ canonical! {
     World { day, total_days, settings, finance, product, customers, issue_desk, market, enterprise }
 }
 
-/// Hash of one part of the state, so that a difference between two runs can be named.
+/// The hash of one part of the state, used to locate differences between runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PartHash {
     /// Name of the part.
@@ -49,7 +49,7 @@ pub struct PartHash {
 }
 
 impl World {
-    /// The world of day 0, and the facts of its set-up.
+    /// Creates the world of day 0 and records the facts of its setup.
     pub fn open(total_days: u32, cash: f64, params: &Params, facts: &mut Facts) -> World {
         facts.begin(0);
         let settings = Settings::opening(params);
@@ -72,12 +72,12 @@ impl World {
         world
     }
 
-    /// Whether nothing more can be simulated: the last day has passed, or cash is below zero.
+    /// Returns whether the run is over: the last day has passed, or the company is bankrupt.
     pub fn is_over(&self, params: &Params) -> bool {
         self.day >= self.total_days || self.finance.is_bankrupt(params)
     }
 
-    /// Hashes of the parts of the state, in declaration order.
+    /// Returns the hashes of the parts of the state in declaration order.
     pub fn part_hashes(&self) -> Vec<PartHash> {
         let World { day, total_days, settings, finance, product, customers, issue_desk, market, enterprise } =
             self;
@@ -95,7 +95,7 @@ impl World {
     }
 }
 
-/// Hash of the parts together.
+/// Returns the hash of all parts together.
 pub fn combined_hash(parts: &[PartHash]) -> blake3::Hash {
     let mut hasher = CanonicalHasher::default();
     for part in parts {
@@ -114,7 +114,7 @@ mod tests {
     use crate::random::Streams;
     use crate::settings::PerGroup;
 
-    /// A company with customers, companies, threads, issues, research and a study.
+    /// A company with individuals, enterprises, threads, issues, research and a study.
     fn company() -> World {
         let (params, streams) = (Params::shipped(), Streams::new(5));
         let mut facts = Facts::default();
@@ -131,10 +131,9 @@ mod tests {
         world
     }
 
-    /// A change of one field; some take a group.
+    /// A change of one field; some changes take a group.
     type Change = fn(&mut World, Group);
 
-    /// Names of the parts that differ.
     fn changed(world: &World, other: &World) -> Vec<&'static str> {
         let pairs = world.part_hashes().into_iter().zip(other.part_hashes());
         pairs.filter(|(own, other)| own.hash != other.hash).map(|(own, _)| own.part).collect()
@@ -181,7 +180,7 @@ mod tests {
         }
     }
 
-    /// Whatever is kept of a state is hashed: a byte of its canonical form, changed, is another state or none.
+    /// All stored state is hashed: changing a byte of the canonical form results in another state or an error.
     #[test]
     fn every_byte_of_a_state_belongs_to_exactly_one_part() {
         let world = company();

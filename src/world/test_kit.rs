@@ -1,4 +1,4 @@
-//! Small companies for tests, here and in other houses.
+//! Small companies for tests of this and other crates.
 
 use crate::customers::columns::Subscriber;
 use crate::customers::persona::PersonaPicks;
@@ -8,7 +8,7 @@ use crate::identifiers::{ByPlan, Channel, Group, Plan};
 use crate::quota::Quota;
 use crate::state::World;
 
-/// A subscriber with plain values; tests change what matters to them.
+/// A subscriber with simple values; tests change what they need.
 pub fn subscriber(n: u32) -> Subscriber {
     Subscriber {
         n,
@@ -41,7 +41,7 @@ pub fn subscriber(n: u32) -> Subscriber {
     }
 }
 
-/// A company with plain values.
+/// An enterprise with simple values.
 pub fn company_of(group: Group, n: u32, customer: u32, standing: Standing) -> Company {
     Company {
         customer,
@@ -60,7 +60,7 @@ pub fn company_of(group: Group, n: u32, customer: u32, standing: Standing) -> Co
     }
 }
 
-/// The settings of a cautious beginner.
+/// Applies the settings of a cautious policy.
 pub fn policy_p(world: &mut World) {
     let s1 = Group::at(0).expect("S1");
     let core = &mut world.settings.core;

@@ -157,7 +157,7 @@ fn a_model_that_does_not_serve_changes_nothing_and_is_told_of_once() {
     for (manner, why) in [
         (Manner::Late, "did not answer in time"),
         (Manner::Short, "cannot be used"),
-        (Manner::Chatty, "no JSON array"),
+        (Manner::Chatty, "not a JSON array"),
         (Manner::Broken, "status 500"),
     ] {
         let stub = Stub::start(manner);

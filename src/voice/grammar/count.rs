@@ -1,8 +1,8 @@
-//! How many ways there are to fill a rule.
+//! Counts the expansions of a rule.
 
 use super::{Context, Grammar, Part, values_given};
 
-/// Ways to fill a rule in a context; at most `u64::MAX`.
+/// Returns the number of expansions of a rule in a context, at most `u64::MAX`.
 pub(super) fn phrasings(grammar: &Grammar, rule: &str, context: &Context) -> u64 {
     let Some(alternatives) = grammar.rules.get(rule) else { return 0 };
     let fitting = alternatives.iter().filter(|alternative| alternative.fits(context));

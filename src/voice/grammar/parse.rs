@@ -1,4 +1,4 @@
-//! Reading a grammar and checking that it can always be filled.
+//! Parses a grammar and checks that it can always be expanded.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,7 +6,6 @@ use toml::{Table, Value};
 
 use super::{Alternative, Grammar, GrammarError, Part};
 
-/// Names that the files declare.
 #[derive(Default)]
 struct Names {
     given: BTreeSet<String>,
@@ -48,10 +47,10 @@ fn list(table: &Table, key: &str) -> Result<BTreeSet<String>, GrammarError> {
     let texts = value.as_array().and_then(|texts| {
         texts.iter().map(|text| text.as_str().map(str::to_owned)).collect::<Option<BTreeSet<String>>>()
     });
-    texts.ok_or_else(|| GrammarError(format!("{key} is no list of names")))
+    texts.ok_or_else(|| GrammarError(format!("{key} is not a list of names")))
 }
 
-/// Nested tables become dotted names.
+/// Converts nested tables to dotted names.
 fn flatten(
     before: &str,
     table: &Table,
@@ -64,12 +63,13 @@ fn flatten(
             Value::Array(texts) if !texts.is_empty() => {
                 let texts: Option<Vec<String>> =
                     texts.iter().map(|text| text.as_str().map(str::to_owned)).collect();
-                let texts = texts.ok_or_else(|| GrammarError(format!("rule {name}: not only texts")))?;
+                let texts =
+                    texts.ok_or_else(|| GrammarError(format!("rule {name}: not all elements are texts")))?;
                 if rules.insert(name.clone(), texts).is_some() {
-                    return Err(GrammarError(format!("rule {name} stands there twice")));
+                    return Err(GrammarError(format!("rule {name} is defined twice")));
                 }
             }
-            _ => return Err(GrammarError(format!("rule {name} is no list of texts"))),
+            _ => return Err(GrammarError(format!("rule {name} is not a list of texts"))),
         }
     }
     Ok(())
@@ -107,7 +107,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Reads up to the end, or within a choice up to `|` or `]`, which stay.
+    /// Parses up to the end, or within a choice up to `|` or `]`, which are not consumed.
     fn parts(&mut self, within_choice: bool) -> Result<Vec<Part>, String> {
         let mut parts = Vec::new();
         loop {
@@ -123,7 +123,7 @@ impl Reader<'_> {
                 Some('|' | ']') if within_choice => return Ok(parts),
                 None if !within_choice => return Ok(parts),
                 None => return Err("a choice is not closed".to_owned()),
-                Some(other) => return Err(format!("{other} stands alone")),
+                Some(other) => return Err(format!("unexpected {other}")),
             }
         }
     }
@@ -133,7 +133,7 @@ impl Reader<'_> {
         self.rest = rest;
         if let Some((rule, by)) = symbol.split_once(':') {
             if !self.names.rules.contains(rule) {
-                return Err(format!("there is no rule {rule} for the case that no special one fits"));
+                return Err(format!("there is no rule {rule} for other values"));
             }
             if !self.names.given.contains(by) && !self.names.maybe.contains(by) {
                 return Err(format!("value {by} is not declared"));
@@ -164,7 +164,7 @@ impl Reader<'_> {
     }
 }
 
-/// Every rule has an alternative that needs no tag and no value that may be missing; and no rule contains itself.
+/// Checks that every rule has an alternative without tags and optional values, and that no rule contains itself.
 fn check_total(rules: &BTreeMap<String, Vec<Alternative>>, names: &Names) -> Result<(), GrammarError> {
     let always = |alternative: &Alternative| {
         alternative.needs.is_empty() && always_filled(&alternative.parts, &names.given)
@@ -172,7 +172,7 @@ fn check_total(rules: &BTreeMap<String, Vec<Alternative>>, names: &Names) -> Res
     for (name, alternatives) in rules {
         if !alternatives.iter().any(always) {
             return Err(GrammarError(format!(
-                "rule {name}: every alternative needs a tag or a value that may be missing"
+                "rule {name}: every alternative needs a tag or an optional value"
             )));
         }
     }
@@ -238,7 +238,7 @@ mod tests {
     use super::*;
 
     fn problem(source: &str) -> String {
-        read(&[source]).expect_err("it has to be refused").to_string()
+        read(&[source]).expect_err("an error").to_string()
     }
 
     #[test]
@@ -247,17 +247,16 @@ mod tests {
             ("[rules]\na = [\"{b}\"]", "b is neither"),
             ("[rules]\na = [\"(old) x\", \"y\"]", "tag old"),
             ("[rules]\na = [\"x [y\"]", "not closed"),
-            ("[rules]\na = [\"x ] y\"]", "stands alone"),
+            ("[rules]\na = [\"x ] y\"]", "unexpected ]"),
             ("[rules]\na = [\"{b}\"]\nb = [\"{a}\"]", "contains itself"),
-            ("maybe = [\"p\"]\n[rules]\na = [\"{p}\"]", "may be missing"),
+            ("maybe = [\"p\"]\n[rules]\na = [\"{p}\"]", "an optional value"),
             ("tags = [\"t\"]\n[rules]\na = [\"(t) x\"]", "needs a tag"),
             ("given = [\"g\"]\n[rules]\na = [\"{b:g}\"]", "no rule b"),
-            ("[rules]\na = []", "rule a is no list"),
+            ("[rules]\na = []", "rule a is not a list"),
         ] {
             assert!(problem(source).contains(words), "{source}: {}", problem(source));
         }
-        let twice =
-            read(&["[rules]\na = [\"x\"]", "[rules]\na = [\"y\"]"]).expect_err("it has to be refused");
+        let twice = read(&["[rules]\na = [\"x\"]", "[rules]\na = [\"y\"]"]).expect_err("an error");
         assert!(twice.to_string().contains("twice"));
     }
 }

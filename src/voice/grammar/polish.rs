@@ -1,6 +1,6 @@
-//! What makes filled rules read as written by hand: articles, spaces, capitals.
+//! Fixes articles, spaces and capitals of expanded text.
 
-/// Puts the fitting article, single spaces, no space before a mark, and capitals at the beginning of sentences.
+/// Inserts the correct articles, removes extra spaces, and capitalizes sentences.
 pub fn polish(text: &str) -> String {
     capitals(&spaces(&articles(text)))
 }
@@ -23,7 +23,8 @@ fn articles(text: &str) -> String {
     polished
 }
 
-/// Whether a word begins with the sound of a vowel: letters that are read out one by one count by their name.
+/// Returns whether a word starts with a vowel sound. Abbreviations that are spelled out count by the name of
+/// their first letter.
 fn vowel_sound(word: &str) -> bool {
     let word: String = word.chars().take_while(|c| c.is_alphanumeric()).collect();
     let spelt = word.len() >= 2 && word.chars().take(2).all(|c| c.is_ascii_uppercase());
@@ -70,7 +71,7 @@ fn capitals(text: &str) -> String {
             polished.extend(character.to_uppercase());
             begins = false;
         } else {
-            // A word that begins with a digit or a sign needs no capital further on.
+            // A word that starts with a digit or sign needs no capital later.
             begins &= !character.is_alphanumeric() && !matches!(character, '@' | '#');
             polished.push(character);
         }

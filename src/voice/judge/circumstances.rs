@@ -1,5 +1,5 @@
-//! What readers know when they judge a post: what they have lived through, and what is on their minds
-//! (docs/mechanics/market/social/judge.md#circumstances). The judge never sees more.
+//! The context of a judgement: the readers' experience and current events
+//! (docs/mechanics/market/social/judge.md#circumstances). The judge uses no other data about the company.
 
 use super::lexicon::Lexicon;
 use novamind_world::events::{Severity, Trend};
@@ -10,20 +10,20 @@ use novamind_world::params::Params;
 use novamind_world::quality::{quota_demand, quota_factor};
 use novamind_world::state::World;
 
-/// The facts behind a judgement.
+/// Facts that a judgement uses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Circumstances {
     /// By group.
     pub groups: ByGroup<Readers>,
-    /// Active subscriptions together.
+    /// Total active subscriptions.
     pub subscribers: u32,
-    /// Own research was finished in the last four weeks.
+    /// Whether own research was completed in the last four weeks.
     pub research_done: bool,
-    /// A list price is below that of four weeks ago, or a discount is new.
+    /// Whether a list price is below that of four weeks ago, or a discount is new.
     pub price_cut: bool,
-    /// A discount is on offer.
+    /// Whether a discount is available.
     pub promotion: bool,
-    /// A quota is above that of four weeks ago.
+    /// Whether a quota is above that of four weeks ago.
     pub quota_up: bool,
     /// Days with an outage in the last two weeks.
     pub outage_days: u32,
@@ -33,13 +33,13 @@ pub struct Circumstances {
     pub p95_ms: f64,
     /// Open issues per subscriber.
     pub issue_rate: f64,
-    /// Mean days they have been open.
+    /// Mean age of open issues in days.
     pub issue_age: f64,
-    /// What is on everybody's mind, with its age in days.
+    /// Current events with their age in days.
     pub live: Vec<(LiveEvent, u32)>,
 }
 
-/// A group of readers.
+/// The state of a group of readers.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Readers {
     /// Active subscriptions.
@@ -50,29 +50,29 @@ pub struct Readers {
     pub progress: f64,
 }
 
-/// What may be on everybody's mind.
+/// A current event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LiveEvent {
     /// The service was down.
     Outage,
     /// A list price was raised.
     PriceUp,
-    /// Support does not keep up.
+    /// Support cannot resolve issues fast enough.
     Issues,
-    /// Many are short of quota.
+    /// Many subscribers lack quota.
     Quota,
-    /// A rival has made a leap.
+    /// A competitor made a large improvement.
     Rival,
-    /// The economy is reported to shrink.
+    /// The economy is reported to contract.
     MacroDown,
     /// The economy is reported to grow.
     MacroUp,
-    /// Own research was finished.
+    /// Own research was completed.
     Research,
 }
 
 impl LiveEvent {
-    /// Word for reasons.
+    /// Identifier for reasons.
     pub fn id(self) -> &'static str {
         match self {
             LiveEvent::Outage => "outage",
@@ -92,13 +92,13 @@ const TWO_WEEKS: usize = 14;
 const WEEK: usize = 7;
 
 impl Circumstances {
-    /// The circumstances at the end of the world's last day.
+    /// Returns the context at the end of the world's last day.
     pub fn of(world: &World, params: &Params, lexicon: &Lexicon) -> Circumstances {
         let chronicle = &world.market.social.chronicle;
         let (today, before) = (chronicle.today(), chronicle.oldest());
         let (issue_rate, issue_age, short) = strains(world, params);
         let latencies: Vec<f64> = chronicle.last(WEEK).filter_map(|page| page.p95_ms).collect();
-        // A price of 0 is none: nothing was on sale.
+        // A price of 0 means that nothing was on sale.
         let cheaper = |plan: &Plan| today.prices[*plan] < before.prices[*plan];
         let mut own = Circumstances {
             groups: ByGroup::from_fn(|group| readers(group, world)),
@@ -118,7 +118,7 @@ impl Circumstances {
         own
     }
 
-    /// Age of a live event; none when it is not on anybody's mind.
+    /// Returns the age of a current event, or `None` if it is not current.
     pub fn age(&self, event: LiveEvent) -> Option<u32> {
         self.live.iter().find(|(live, _)| *live == event).map(|(_, age)| *age)
     }
@@ -132,7 +132,7 @@ fn readers(group: Group, world: &World) -> Readers {
     Readers { subscribers: count, satisfaction, progress: world.market.social.chronicle.progress(group) }
 }
 
-/// Open issues per subscriber, their mean age in days, and the share of subscribers short of quota.
+/// Returns open issues per subscriber, their mean age in days, and the share of subscribers who lack quota.
 fn strains(world: &World, params: &Params) -> (f64, f64, f64) {
     let core = &world.settings.core;
     let weekday = params.calendar.weekly[(world.day % 7) as usize];
@@ -232,7 +232,7 @@ mod tests {
             at_day.push(Circumstances::of(&world, &params, Lexicon::shipped()));
         }
         let on = |day: usize| &at_day[day - 1];
-        assert_eq!(on(19).age(LiveEvent::PriceUp), None, "the first prices are no rise");
+        assert_eq!(on(19).age(LiveEvent::PriceUp), None, "the first prices are not a price increase");
         assert_eq!((on(20).age(LiveEvent::PriceUp), on(34).age(LiveEvent::PriceUp)), (Some(0), Some(14)));
         assert_eq!(on(35).age(LiveEvent::PriceUp), None);
         assert!(!on(39).quota_up && on(40).quota_up && on(60).quota_up);
@@ -247,6 +247,6 @@ mod tests {
         for (now, age) in at_day.iter().zip(&ages) {
             assert_eq!(now.outage_days > 0, age.is_some_and(|age| age < 14), "{age:?}");
         }
-        assert!(ages.iter().flatten().any(|age| (7..14).contains(age)), "no outage grew older than a week");
+        assert!(ages.iter().flatten().any(|age| (7..14).contains(age)), "no outage is older than a week");
     }
 }

@@ -1,21 +1,21 @@
-//! Claims of a post, and whether readers have lived them (docs/mechanics/market/social/judge.md#claims).
+//! Claims of a post and whether readers experienced them (docs/mechanics/market/social/judge.md#claims).
 
 use super::circumstances::{Circumstances, Readers};
 use super::features::Features;
 use super::lexicon::Lexicon;
 
-/// A claim and what a group makes of it.
+/// A claim and a group's verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Claim {
     /// Its name.
     pub name: &'static str,
-    /// True, false, or not for these readers to say.
+    /// True, false, or `None` if the readers do not know.
     pub verdict: Option<bool>,
 }
 
 const NAMES: [&str; 6] = ["price_down", "quality_up", "reliability", "speed", "support", "limits"];
 
-/// The claims of a post in the eyes of a group.
+/// Returns the claims of a post with the verdict of a group.
 pub fn claims(
     features: &Features,
     readers: &Readers,
@@ -67,7 +67,7 @@ fn verdict(name: &str, readers: &Readers, own: &Circumstances, lexicon: &Lexicon
     }
 }
 
-/// The largest number that stands before customers, users or subscribers; `k` is a thousand, `m` a million.
+/// Returns the largest number before customers, users or subscribers; `k` is a thousand, `m` a million.
 fn audience(normal: &str) -> Option<f64> {
     let words = ["customer", "user", "subscriber"];
     let ends = words.iter().flat_map(|word| normal.match_indices(word)).map(|(at, _)| at);

@@ -1,4 +1,4 @@
-//! What a post is like, the same for every reader (docs/mechanics/market/social/judge.md#features).
+//! Features of a post, the same for every reader (docs/mechanics/market/social/judge.md#features).
 
 use super::lexicon::{Features as Law, Lexicon};
 use super::text::{Entry, Reading, is_emoji};
@@ -6,48 +6,48 @@ use super::text::{Entry, Reading, is_emoji};
 /// Features of a post.
 #[derive(Debug, Clone)]
 pub struct Features {
-    /// The text, read.
+    /// The tokenized text.
     pub reading: Reading,
     /// Strength of every topic, 0..=1, in the order of the lexicon.
     pub topics: Vec<f64>,
-    /// Numbers and amounts of money.
+    /// Number of numbers and amounts of money.
     pub numbers: u32,
-    /// How specific it is, 0..=1.
+    /// Specificity, 0..=1.
     pub specific: f64,
     /// Promises without measure, 0..=1.
     pub absolutes: f64,
-    /// Words of advertising, 0..=1.
+    /// Advertising words, 0..=1.
     pub buzzwords: f64,
-    /// How casual, 0..=1.
+    /// Casual style, 0..=1.
     pub casual: f64,
-    /// How technical, 0..=1.
+    /// Technical style, 0..=1.
     pub technical: f64,
-    /// It takes the blame.
+    /// Whether it apologizes.
     pub apology: bool,
-    /// It names a cause.
+    /// Whether it names a cause.
     pub cause: bool,
-    /// It names a remedy.
+    /// Whether it names a remedy.
     pub remedy: bool,
-    /// It says when, or how many.
+    /// Whether it names a time or a number.
     pub when: bool,
-    /// Pushing to buy, 0..=3.
+    /// Sales pressure, 0..=3.
     pub sell: f64,
-    /// It blames the reader.
+    /// Whether it blames the reader.
     pub defensive: bool,
-    /// It says what a company never says.
+    /// Whether it contains misconduct, such as insults.
     pub conduct: bool,
-    /// It runs rivals down.
+    /// Whether it disparages competitors.
     pub bash: bool,
-    /// It speaks to the reader.
+    /// Whether it addresses the reader.
     pub you: bool,
-    /// Words piled up instead of sentences.
+    /// Keyword stuffing.
     pub stuffing: f64,
-    /// Too little text to say anything.
+    /// Whether the text is too short to judge.
     pub empty: bool,
 }
 
 impl Features {
-    /// Reads a post.
+    /// Extracts the features of a post.
     pub fn of(content: &str, lexicon: &Lexicon) -> Features {
         let (law, words) = (&lexicon.features, &lexicon.words);
         let reading = Reading::of(content);
@@ -89,7 +89,7 @@ impl Features {
         }
     }
 
-    /// Whether a topic is touched.
+    /// Returns whether the post mentions a topic.
     pub fn hits(&self, topic: usize) -> bool {
         self.topics[topic] > 0.0
     }
@@ -113,7 +113,7 @@ fn casual(content: &str, slang: u32, law: &Law) -> f64 {
     total.min(1.0)
 }
 
-/// Whether a digit is followed by one of these units.
+/// Returns whether a digit is followed by one of these units.
 fn has_unit(normal: &str, units: &[String]) -> bool {
     normal.char_indices().any(|(at, character)| {
         let rest = normal[at + character.len_utf8()..].trim_start_matches(' ');
@@ -121,7 +121,7 @@ fn has_unit(normal: &str, units: &[String]) -> bool {
     })
 }
 
-/// Share of topic words beyond the half, and the lack of words that make a sentence.
+/// Returns the share of topic words beyond one half, plus the lack of function words.
 fn stuffing(reading: &Reading, lexicon: &Lexicon) -> f64 {
     let law = &lexicon.features;
     let tokens = reading.tokens().len();

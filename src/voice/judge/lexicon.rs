@@ -8,14 +8,14 @@ use serde::{Deserialize, Deserializer};
 use super::text::Entry;
 use novamind_world::identifiers::Group;
 
-/// A list of entries.
+/// A list of word patterns.
 pub type List = Vec<Entry>;
 
-/// Everything the judge goes by.
+/// Word lists, weights and profiles of the judge.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lexicon {
-    /// The fixed order of the topics: of equally strong ones the first leads.
+    /// The fixed order of the topics; the first of equally strong ones leads.
     topic_order: Vec<String>,
     /// Topics in their fixed order.
     #[serde(deserialize_with = "lists")]
@@ -24,26 +24,26 @@ pub struct Lexicon {
     pub words: Words,
     /// Patterns of claims.
     pub claims: IndexMap<String, ClaimPattern>,
-    /// Where claims turn true or false.
+    /// Thresholds of true and false claims.
     pub verdicts: Verdicts,
-    /// What may be on everybody's mind.
+    /// Current events.
     pub events: Events,
-    /// How much.
+    /// Salience of current events.
     pub salience: Salience,
-    /// From words to features.
+    /// Weights from words to features.
     pub features: Features,
-    /// From features to a score.
+    /// Weights from features to a score.
     pub terms: Terms,
-    /// What each group cares about.
+    /// Preferences of each group.
     profiles: IndexMap<String, Profile>,
 }
 
 impl Lexicon {
-    /// The shipped one.
+    /// Returns the bundled lexicon.
     pub fn shipped() -> &'static Lexicon {
         static SHIPPED: LazyLock<Lexicon> = LazyLock::new(|| {
             let text = include_str!("../../../assets/voice/judge.toml");
-            let mut read: Lexicon = toml::from_str(text).expect("the shipped word lists are tested");
+            let mut read: Lexicon = toml::from_str(text).expect("the bundled word lists are valid");
             let Lexicon { topic_order, topics, .. } = &mut read;
             topics.sort_by_cached_key(|name, _| topic_order.iter().position(|other| other == name));
             read
@@ -51,17 +51,17 @@ impl Lexicon {
         &SHIPPED
     }
 
-    /// Profile of a group.
+    /// Returns the profile of a group.
     pub fn profile(&self, group: Group) -> &Profile {
         &self.profiles[group.id()]
     }
 
-    /// Position of a topic in the fixed order.
+    /// Returns the index of a topic in the fixed order.
     pub fn topic(&self, name: &str) -> usize {
-        self.topics.get_index_of(name).expect("the shipped word lists are tested")
+        self.topics.get_index_of(name).expect("the topic is in the bundled lists")
     }
 
-    /// Name of a topic.
+    /// Returns the name of a topic.
     pub fn topic_name(&self, topic: usize) -> &str {
         self.topics.get_index(topic).map_or("", |(name, _)| name)
     }
@@ -78,7 +78,7 @@ fn list<'de, D: Deserializer<'de>>(from: D) -> Result<List, D::Error> {
 
 fn anywhere<'de, D: Deserializer<'de>>(from: D) -> Result<List, D::Error> {
     let texts = Vec::<String>::deserialize(from)?;
-    // An entry with a slash, as 24/7, is no token: it is looked for anywhere. Single words are matched as words.
+    // An entry with a slash, such as 24/7, is not a token, so it is searched for anywhere. Single words match tokens.
     Ok(texts
         .iter()
         .map(|text| if text.contains('/') { Entry::anywhere(text) } else { Entry::read(text) })
@@ -91,13 +91,13 @@ fn read(texts: &[String]) -> List {
 
 macro_rules! words {
     ($($(#[$doc:meta])* $field:ident,)*) => {
-        /// Lists that are no topics.
+        /// Lists other than topics.
         #[derive(Debug, Clone, Deserialize)]
         #[serde(deny_unknown_fields)]
         pub struct Words { $($(#[$doc])* #[serde(deserialize_with = "list")] pub $field: List,)* }
 
         impl Words {
-            /// All lists, for tests that draw from them.
+            /// Returns all lists, for tests that draw from them.
             #[cfg(test)]
             pub fn all(&self) -> Vec<&List> {
                 vec![$(&self.$field),*]
@@ -109,39 +109,39 @@ macro_rules! words {
 words! {
     /// Promises without measure.
     absolutes,
-    /// Words of advertising.
+    /// Advertising words.
     buzzwords,
     /// Casual words.
     slang,
-    /// Terms of engineers.
+    /// Engineering terms.
     tech,
-    /// What was done.
+    /// Statements of what was done.
     actions,
-    /// When.
+    /// Times.
     times,
-    /// Taking the blame.
+    /// Apologies.
     apology,
-    /// Naming the cause.
+    /// Naming a cause.
     cause,
-    /// Naming the remedy.
+    /// Naming a remedy.
     remedy,
-    /// Pushing to buy.
+    /// Sales pressure.
     hard_sell,
     /// Blaming the reader.
     defensive,
-    /// What a company never says.
+    /// Misconduct, such as insults.
     conduct,
-    /// Names of rivals.
+    /// Names of competitors.
     rivals,
-    /// Running others down.
+    /// Disparaging words.
     negative,
-    /// Speaking to the reader.
+    /// Addressing the reader.
     you,
-    /// Words that make sentences.
+    /// Function words.
     function,
 }
 
-/// How a claim is made.
+/// Pattern of a claim.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ClaimPattern {
@@ -156,13 +156,13 @@ pub struct ClaimPattern {
     pub to: List,
 }
 
-/// Taste of a group.
+/// Preferences of a group.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Profile {
     /// Formality, 0..=1.
     pub f: f64,
-    /// Technical taste, 0..=1.
+    /// Preference for technical style, 0..=1.
     pub t: f64,
     /// Aversion to hype, 0..=1.
     pub a: f64,
@@ -170,17 +170,17 @@ pub struct Profile {
     pub m: f64,
     /// Gain.
     pub k: f64,
-    /// Weights of topics, others 0.
+    /// Weights of topics; other topics have weight 0.
     w: IndexMap<String, f64>,
 }
 
 impl Profile {
-    /// Weight of a topic.
+    /// Returns the weight of a topic.
     pub fn weight(&self, topic: &str) -> f64 {
         self.w.get(topic).copied().unwrap_or(0.0)
     }
 
-    /// Topics with a weight.
+    /// Returns the topics with a weight.
     #[cfg(test)]
     pub fn topics(&self) -> impl Iterator<Item = (&str, f64)> {
         self.w.iter().map(|(topic, weight)| (topic.as_str(), *weight))
@@ -192,13 +192,13 @@ macro_rules! numbers {
         $(#[$doc])*
         #[derive(Debug, Clone, Deserialize)]
         #[serde(deny_unknown_fields)]
-        #[allow(missing_docs, reason = "the shipped file documents its numbers")]
+        #[allow(missing_docs, reason = "the bundled file documents its numbers")]
         pub struct $Name { $($(#[$field_doc])* pub $field: $kind,)* }
     };
 }
 
 numbers! {
-    /// Where claims turn true or false.
+    /// Thresholds of true and false claims.
     Verdicts {
         near_positions: usize,
         quality_progress: f64,
@@ -215,7 +215,7 @@ numbers! {
 }
 
 numbers! {
-    /// Live events and the topics that address them.
+    /// Current events and the topics that address them.
     Events {
         kept_days: u32,
         fresh_days: u32,
@@ -236,7 +236,7 @@ numbers! {
 }
 
 numbers! {
-    /// How much a live event is on a group's mind.
+    /// Salience of a current event for a group.
     Salience {
         outage_minded: f64,
         outage: f64,
@@ -253,7 +253,7 @@ numbers! {
 }
 
 numbers! {
-    /// From words to features.
+    /// Weights from words to features.
     Features {
         topic_first: f64,
         topic_more: f64,
@@ -287,7 +287,7 @@ numbers! {
 }
 
 numbers! {
-    /// From features to a score.
+    /// Weights from features to a score.
     Terms {
         receptive: f64,
         topics: f64,

@@ -1,9 +1,9 @@
-//! The judge of the company's posts: text in, one reaction per group out, with reasons
+//! The judge of the player's posts: returns one reaction per group with reasons
 //! (docs/mechanics/market/social/judge.md).
 //!
-//! It stands in for readers who scroll past or stop. Reactions lie within -1..=1; from 0.6 on, either way, people
-//! answer and leads follow. Unlike the readers of a real network these compare what a post claims with what they
-//! have lived through, so honesty pays. Pure: no chance, no clock; equal input gives equal output everywhere.
+//! It models readers who either ignore or answer a post. Reactions are within -1..=1; from 0.6 on, positive
+//! or negative, they cause comments and change leads. Readers compare claims with their experience, so honest
+//! posts score higher. The judge is pure: it uses neither randomness nor a clock.
 
 pub mod circumstances;
 mod claims;
@@ -28,72 +28,72 @@ use novamind_world::identifiers::Group;
 use std::borrow::Cow;
 use text::{Reading, pair_overlap};
 
-/// A post of the company and what came before it.
+/// A post of the player with its context.
 #[derive(Debug, Clone, Default)]
 pub struct Submission<'a> {
     /// Its text.
     pub content: &'a str,
     /// Day it was made.
     pub day: u32,
-    /// The post it answers.
+    /// The post that it replies to.
     pub original: Option<Original<'a>>,
-    /// Earlier posts of the company: day and text.
+    /// Earlier posts of the player: day and text.
     pub earlier: Vec<(u32, &'a str)>,
 }
 
-/// A post that is answered.
+/// A post that is replied to.
 #[derive(Debug, Clone, Copy)]
 pub struct Original<'a> {
     /// Its text.
     pub content: &'a str,
-    /// Whether it complains.
+    /// Whether it is a complaint.
     pub negative: bool,
-    /// Group of its author; none for the press.
+    /// Group of its author; `None` for the press.
     pub group: Option<Group>,
 }
 
-/// How a group takes a post, and why.
+/// The reaction of a group, with reasons.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Judgement {
     /// The group.
     pub group: Group,
     /// Reaction, -1..=1 in hundredths.
     pub effect: f64,
-    /// What it is made of, before the group's gain, in a fixed order; zeros are left out.
+    /// Terms of the reaction before the group's gain, in a fixed order without zeros.
     pub terms: Vec<Term>,
-    /// Why, in the words of a language model, where that judged.
+    /// The reason given by a language model, if one judged.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub said: Option<String>,
 }
 
-/// One part of a reaction.
+/// One term of a reaction.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Term {
     /// Name.
     pub name: Cow<'static, str>,
-    /// Size with its sign.
+    /// Signed size.
     pub value: f64,
-    /// Topics, claims or events behind it.
+    /// Topics, claims or events that caused it.
     pub because: Vec<String>,
 }
 
 impl Judgement {
-    /// The terms by their size, the largest first.
+    /// Returns the terms in descending order of size.
     pub fn leading(&self) -> Vec<&Term> {
         let mut terms: Vec<&Term> = self.terms.iter().collect();
         terms.sort_by(|one, other| other.value.abs().total_cmp(&one.value.abs()));
         terms
     }
 
-    /// The same readers as a language model scored them. What the post is about stays known, for comments name it.
+    /// Replaces the reaction by a language model's score. The topics stay, because comments name them.
     pub fn scored_by_model(self, score: &ModelScore) -> Judgement {
         let Judgement { group, mut terms, .. } = self;
         terms.retain(|term| term.name == "topics");
         Judgement { group, effect: score.score, terms, said: Some(score.reason.clone()) }
     }
 
-    /// The three largest terms in one line, for instance `topics +0.40 (api, limits), specific +0.20`; what a language model
-    /// gave as its reason, where that judged.
+    /// Returns the three largest terms in one line, for instance `topics +0.40 (api, limits), specific
+    /// +0.20`, or the reason given by a language model if one judged.
     pub fn reason(&self) -> String {
         if let Some(said) = &self.said {
             return said.clone();
@@ -110,10 +110,10 @@ impl Judgement {
     }
 }
 
-/// What a post is like for everybody, read once for all groups.
+/// Group-independent data of a post.
 struct Case<'a> {
     features: Features,
-    /// Topics of the post that is answered.
+    /// Features of the post that is replied to.
     original: Option<(Features, Original<'a>)>,
     /// Earlier posts of the last four weeks.
     recent: Vec<Features>,
@@ -123,7 +123,7 @@ struct Case<'a> {
     lexicon: &'a Lexicon,
 }
 
-/// Judges a post in the eyes of these groups.
+/// Returns the reactions of these groups to a post.
 pub fn judge(
     submission: &Submission<'_>,
     groups: impl IntoIterator<Item = Group>,

@@ -7,7 +7,7 @@ use super::lexicon::Profile;
 use super::{Case, Judgement, Term};
 use novamind_world::identifiers::Group;
 
-/// A post in the eyes of one group.
+/// A post as one group judges it.
 struct Eyes<'a> {
     group: Group,
     case: &'a Case<'a>,
@@ -33,7 +33,7 @@ pub(super) fn judge_group(group: Group, case: &Case<'_>) -> Judgement {
     Judgement { group, effect: compressed(raw, lexicon.terms.knee), terms, said: None }
 }
 
-/// Keeps a score within -1..=1 without a hard edge, in hundredths: above the knee it bends towards 1.
+/// Compresses a score into -1..=1, rounded to hundredths: above the knee it approaches 1.
 fn compressed(raw: f64, knee: f64) -> f64 {
     let size = raw.abs();
     let rest = 1.0 - knee;
@@ -96,7 +96,7 @@ impl Eyes<'_> {
         self.profile.weight(self.case.lexicon.topic_name(topic))
     }
 
-    /// R: how well the topics fit, -1..=1, and the topics behind it.
+    /// R: fit of the topics, -1..=1, with the topics behind it.
     fn fit(&self) -> (f64, Vec<String>) {
         let (lexicon, law) = (self.case.lexicon, &self.case.lexicon.terms);
         let mut best = self.weighted(&self.case.features);
@@ -114,13 +114,13 @@ impl Eyes<'_> {
         (fit, best.iter().map(|(topic, _)| lexicon.topic_name(*topic).to_owned()).collect())
     }
 
-    /// Topics of a post with weight times strength.
+    /// Returns the topics of a post with weight times strength.
     fn weighted(&self, features: &Features) -> Vec<(usize, f64)> {
         let strengths = features.topics.iter().enumerate();
         strengths.map(|(topic, strength)| (topic, self.weight(topic) * strength)).collect()
     }
 
-    /// The topic with the largest weight times strength; of equal ones the first.
+    /// Returns the topic with the largest weight times strength, the first one on ties.
     fn leading_topic(&self, features: &Features) -> Option<usize> {
         let mut lead: Option<(usize, f64)> = None;
         for (topic, value) in self.weighted(features) {
@@ -131,7 +131,7 @@ impl Eyes<'_> {
         lead.map(|(topic, _)| topic)
     }
 
-    /// T: how the tone suits the group, -1..=1.
+    /// T: fit of the tone, -1..=1.
     fn tone(&self) -> f64 {
         let (law, features, own) = (&self.case.lexicon.terms, &self.case.features, self.profile);
         let casual = law.casual * (own.m - law.casual_neutral) * features.casual;
@@ -140,7 +140,7 @@ impl Eyes<'_> {
         (casual + formal + technical - own.a * features.buzzwords).clamp(-1.0, 1.0)
     }
 
-    /// E: whether it speaks to what is on everybody's mind, -0.6..=1, and the event behind it.
+    /// E: whether the post addresses a current event, -0.6..=1, with that event.
     fn timing(&self) -> (f64, Vec<String>) {
         let (features, law) = (&self.case.features, &self.case.lexicon.terms);
         if let Some(event) = self.deaf_to() {
@@ -163,7 +163,7 @@ impl Eyes<'_> {
         best.map_or((0.0, Vec::new()), |(event, value)| (value, vec![event.id().to_owned()]))
     }
 
-    /// The outage or price rise that a cheerful post passes over.
+    /// Returns the outage or price increase that a cheerful post ignores.
     fn deaf_to(&self) -> Option<LiveEvent> {
         let (features, lexicon) = (&self.case.features, self.case.lexicon);
         let cheerful = ["release", "deal", "price"].iter().any(|topic| features.hits(lexicon.topic(topic)));
@@ -211,7 +211,7 @@ impl Eyes<'_> {
         }
     }
 
-    /// A: taking responsibility where there is something to answer for.
+    /// A: taking responsibility if there is a reason to.
     fn account(&self) -> f64 {
         let (features, law) = (&self.case.features, &self.case.lexicon.terms);
         let to_answer = [LiveEvent::Outage, LiveEvent::PriceUp, LiveEvent::Issues, LiveEvent::Quota];
@@ -231,7 +231,7 @@ impl Eyes<'_> {
         fitting.map(|claim| claim.name.to_owned()).collect()
     }
 
-    /// C-: how much a false claim hurts.
+    /// C-: the penalty of a false claim.
     fn unbelieved(&self, contradicted: &[String]) -> f64 {
         let readers = self.case.circumstances.groups[self.group].subscribers;
         match (contradicted.is_empty(), readers > 0) {
@@ -253,12 +253,12 @@ impl Eyes<'_> {
         law.hard_sell * self.case.features.sell * if welcome { 0.5 } else { 1.0 }
     }
 
-    /// Whether a comparison with rivals is one of numbers, for readers who like them.
+    /// Returns whether the post compares with competitors in numbers, for groups that prefer them.
     fn speaks_numbers(&self) -> bool {
         self.profile.t >= self.case.lexicon.terms.technical_taste && self.case.features.numbers > 0
     }
 
-    /// What an answer owes the post it answers.
+    /// Returns the terms of a reply for the post that it answers.
     fn reply(&self) -> Vec<Term> {
         let (features, law) = (&self.case.features, &self.case.lexicon.terms);
         let Some((original, own)) = &self.case.original else { return Vec::new() };
@@ -277,7 +277,7 @@ fn term(name: &'static str, value: f64, because: Vec<String>) -> Term {
     Term { name: name.into(), value, because }
 }
 
-/// A term whose good side a dishonest or ugly post loses.
+/// Returns a term whose positive value is reduced in a dishonest or offensive post.
 fn spoilable(name: &'static str, value: f64, spoilt: bool, because: Vec<String>, share: f64) -> Term {
     term(name, if spoilt && value > 0.0 { value * share } else { value }, because)
 }

@@ -1,4 +1,4 @@
-//! Worked examples and what must hold of every judgement.
+//! Worked examples and properties of all judgements.
 
 use super::circumstances::{LiveEvent, Readers};
 use super::text::Entry;
@@ -14,7 +14,7 @@ fn group(id: &str) -> Group {
     Group::parse(id).expect("a group")
 }
 
-/// The facts of the worked examples before anything is changed.
+/// The context of the worked examples before changes.
 fn usual() -> Circumstances {
     let count = |id: &str| match id {
         "S1" => 4000,
@@ -306,7 +306,7 @@ fn every_group_can_be_won_and_lost() {
         bad: String,
     }
     let text = include_str!("../../../assets/voice/examples.toml");
-    let pairs: std::collections::BTreeMap<String, Pair> = toml::from_str(text).expect("the shipped examples");
+    let pairs: std::collections::BTreeMap<String, Pair> = toml::from_str(text).expect("the bundled examples");
     assert_eq!(pairs.len(), Group::COUNT);
     let kept = Circumstances { quota_up: true, price_cut: true, promotion: true, ..usual() };
     let broken = Circumstances { quota_up: false, p95_ms: 500.0, ..with_outage() };
@@ -333,9 +333,9 @@ fn events_are_fresh_for_a_week_and_remembered_for_another() {
     for age in 0..=14 {
         let expected = if age <= 7 { fresh } else { fresh / 2.0 };
         let found = timing(&apology, LiveEvent::Outage, age);
-        assert!((found - expected).abs() < 1e-12, "day {age}: {found} instead of {expected}");
+        assert!((found - expected).abs() < 1e-12, "day {age}: got {found}, expected {expected}");
     }
-    // A cheerful post passes over an outage for as long as that is fresh, over a price rise for as long as it is known.
+    // A cheerful post ignores an outage as long as that is recent, and a price increase as long as it is remembered.
     let cheerful = Example { submission: post("New feature launch: brainstorm boards are here."), ..of("g") };
     for age in 0..=14 {
         assert_eq!(timing(&cheerful, LiveEvent::Outage, age) < 0.0, age <= 7, "outage of day {age}");

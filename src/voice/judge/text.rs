@@ -1,27 +1,27 @@
-//! Finding words in a post.
+//! Tokenization and word matching for posts.
 
-/// A text in the forms that entries are matched with.
+/// A text in the forms that patterns are matched with.
 #[derive(Debug, Clone)]
 pub struct Reading {
-    /// Lower case, with plain quotes and dashes.
+    /// Lowercase text with plain quotes and dashes.
     normal: String,
     /// Words and numbers in order.
     tokens: Vec<String>,
 }
 
-/// How an entry of a word list is matched.
+/// A pattern of a word list.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Entry {
-    /// Tokens that begin with it.
+    /// Tokens with this prefix.
     Prefix(String),
     /// A token equal to it.
     Word(String),
-    /// Anywhere in the text; with its words, for the share of a text that a list covers.
+    /// Matches anywhere in the text; its words determine which tokens it covers.
     Phrase(String, Vec<Entry>),
 }
 
 impl Entry {
-    /// Reads an entry as a list writes it.
+    /// Parses a pattern of a list.
     pub fn read(text: &str) -> Entry {
         if text.contains(' ') || text.starts_with(['/', '%', '#']) || text.ends_with('%') {
             return Entry::anywhere(text);
@@ -32,7 +32,7 @@ impl Entry {
         }
     }
 
-    /// An entry that is looked for anywhere in a text.
+    /// Creates a pattern that matches anywhere in a text.
     pub fn anywhere(text: &str) -> Entry {
         let words = text.split(|c: char| !(c.is_ascii_alphanumeric() || "'-*".contains(c)));
         let words = words.filter(|word| !word.is_empty());
@@ -43,7 +43,7 @@ impl Entry {
         Entry::Phrase(text.trim_end_matches('*').to_owned(), words.map(entry).collect())
     }
 
-    /// Whether a token, without its leading #, is this entry.
+    /// Returns whether the pattern matches a token, ignoring a leading #.
     fn is_token(&self, token: &str) -> bool {
         let token = token.trim_start_matches('#');
         match self {
@@ -53,7 +53,7 @@ impl Entry {
         }
     }
 
-    /// Whether an entry occurs in a text.
+    /// Returns whether the pattern occurs in a text.
     pub fn occurs(&self, reading: &Reading) -> bool {
         match self {
             Entry::Phrase(text, _) => reading.normal.contains(text.as_str()),
@@ -61,7 +61,7 @@ impl Entry {
         }
     }
 
-    /// The entry as a list writes it, without its star.
+    /// Returns the pattern as written in a list, without its star.
     #[cfg(test)]
     pub fn text(&self) -> &str {
         match self {
@@ -71,7 +71,7 @@ impl Entry {
 }
 
 impl Reading {
-    /// Reads a text.
+    /// Tokenizes a text.
     pub fn of(text: &str) -> Reading {
         let plain = |character: char| match character {
             '\u{2018}' | '\u{2019}' | '\u{201b}' | '\u{2032}' => '\'',
@@ -84,33 +84,33 @@ impl Reading {
         Reading { normal, tokens }
     }
 
-    /// Words and numbers in order.
+    /// Returns words and numbers in order.
     pub fn tokens(&self) -> &[String] {
         &self.tokens
     }
 
-    /// The text in lower case, with plain quotes and dashes.
+    /// Returns the lowercase text with plain quotes and dashes.
     pub fn normal(&self) -> &str {
         &self.normal
     }
 
-    /// How many different entries of a list occur.
+    /// Returns how many different patterns of a list occur.
     pub fn count(&self, list: &[Entry]) -> u32 {
         list.iter().filter(|entry| entry.occurs(self)).count() as u32
     }
 
-    /// Whether any entry of a list occurs.
+    /// Returns whether any pattern of a list occurs.
     pub fn any(&self, list: &[Entry]) -> bool {
         list.iter().any(|entry| entry.occurs(self))
     }
 
-    /// Tokens that are numbers or amounts of money.
+    /// Returns the number of tokens that are numbers or amounts of money.
     pub fn numbers(&self) -> u32 {
         let number = |token: &&String| token.starts_with(|c: char| c.is_ascii_digit() || c == '$');
         self.tokens.iter().filter(number).count() as u32
     }
 
-    /// Whether a token of one list stands close to another token of a second list.
+    /// Returns whether a token of one list is close to a different token of another list.
     pub fn near(&self, one: &[Entry], other: &[Entry], positions: usize) -> bool {
         let places = |list: &[Entry]| -> Vec<usize> {
             let of_list = |token: &String| list.iter().any(|entry| entry.is_token(token));
@@ -120,7 +120,7 @@ impl Reading {
         first.iter().any(|a| second.iter().any(|b| a != b && a.abs_diff(*b) <= positions))
     }
 
-    /// Which tokens a list covers: single words, and all words of a phrase that occurs.
+    /// Returns which tokens a list covers: single words, and all words of a phrase that occurs.
     pub fn covered(&self, list: &[Entry]) -> Vec<bool> {
         let mut covered = vec![false; self.tokens.len()];
         for entry in list {
@@ -144,7 +144,7 @@ impl Reading {
     }
 }
 
-/// Words (`#?[a-z0-9][a-z0-9'-]*%?`) and amounts of money (`$[0-9][0-9.,]*`).
+/// Returns words (`#?[a-z0-9][a-z0-9'-]*%?`) and amounts of money (`$[0-9][0-9.,]*`).
 fn tokens(normal: &str) -> Vec<String> {
     let bytes = normal.as_bytes();
     let is_start = |at: usize| bytes.get(at).is_some_and(u8::is_ascii_alphanumeric);
@@ -172,12 +172,12 @@ fn tokens(normal: &str) -> Vec<String> {
     tokens
 }
 
-/// Whether a character counts as an emoji.
+/// Returns whether a character counts as an emoji.
 pub fn is_emoji(character: char) -> bool {
     matches!(character, '\u{1F300}'..='\u{1FAFF}' | '\u{2600}'..='\u{27BF}')
 }
 
-/// Share of the pairs of neighbouring tokens that two texts have in common, 0..=1.
+/// Returns the share of adjacent token pairs that two texts have in common, 0..=1.
 pub fn pair_overlap(one: &Reading, other: &Reading) -> f64 {
     let pairs = |reading: &Reading| -> std::collections::BTreeSet<(String, String)> {
         reading.tokens.windows(2).map(|pair| (pair[0].clone(), pair[1].clone())).collect()

@@ -1,18 +1,18 @@
-//! What all answers have in common: a JSON array, and texts that can be shown.
+//! Validation that all language model responses share: a JSON array, and printable texts.
 
 use serde_json::Value;
 use unicode_width::UnicodeWidthChar;
 
 use novamind_base::notation::printable;
 
-/// Letters without a width of their own, at most: accents of a text that is written apart.
+/// Maximum zero-width characters, such as accents of decomposed text.
 const MOST_MARKS: usize = 20;
 
-/// The array that an answer is. Models like to put it into a block of code; nothing else may stand around it.
+/// Parses a response that is a JSON array. A code fence around it is allowed, because models often add one.
 pub(super) fn array(answer: &str) -> Result<Vec<Value>, String> {
     match serde_json::from_str(without_fence(answer.trim())) {
         Ok(Value::Array(values)) => Ok(values),
-        Ok(_) | Err(_) => Err("it is no JSON array".to_owned()),
+        Ok(_) | Err(_) => Err("it is not a JSON array".to_owned()),
     }
 }
 
@@ -22,21 +22,21 @@ fn without_fence(answer: &str) -> &str {
     inner.map_or(answer, |(_, rest)| rest.trim())
 }
 
-/// Whether a text can be shown in one place: not empty, one line, no letter that acts, no longer than that.
+/// Checks that a text can be shown in one line: not empty, no control characters, at most `most_letters` characters.
 pub(super) fn check_text(text: &str, most_letters: usize) -> Result<(), String> {
     if text.trim().is_empty() {
         return Err("a text is empty".to_owned());
     }
     if text.chars().any(char::is_control) || printable(text) != text {
-        return Err("a text has control characters or line ends".to_owned());
+        return Err("a text contains control characters or line breaks".to_owned());
     }
-    // Marks that pile up on a letter reach into the lines around it.
+    // Stacked combining marks overlap adjacent lines.
     if text.chars().filter(|letter| letter.width() == Some(0)).count() > MOST_MARKS {
-        return Err(format!("a text has more than {MOST_MARKS} letters without a width"));
+        return Err(format!("a text has more than {MOST_MARKS} zero-width characters"));
     }
     match text.chars().count() {
         letters if letters > most_letters => {
-            Err(format!("a text has {letters} letters, more than {most_letters}"))
+            Err(format!("a text has {letters} characters; the maximum is {most_letters}"))
         }
         _ => Ok(()),
     }
@@ -50,7 +50,7 @@ mod tests {
     fn marks_that_pile_up_are_refused_and_accents_are_not() {
         assert!(check_text("Cafe\u{301}, 12 euros", 100).is_ok());
         let piled = format!("Up{} 12", "\u{301}".repeat(MOST_MARKS + 1));
-        assert!(check_text(&piled, 100).expect_err("piled").contains("without a width"));
+        assert!(check_text(&piled, 100).expect_err("piled").contains("zero-width"));
     }
 
     #[test]

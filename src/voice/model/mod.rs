@@ -1,17 +1,17 @@
-//! What a language model is asked that lends the public its voice, and what counts as an answer (docs/interfaces/voice.md).
+//! Prompts for language models that word or judge posts, and validation of their responses (docs/interfaces/voice.md).
 //!
-//! Text goes in and comes out. Whoever asks owns the connection, the clock and the record.
+//! This module handles text only. The caller owns the connection, the clock and the record.
 
 mod answer;
 pub mod scoring;
 pub mod settings;
 pub mod wording;
 
-/// What is sent to the model.
+/// A prompt for the model.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ModelPrompt {
-    /// What it is to do.
+    /// The task.
     pub task: String,
-    /// What it is to do it with: JSON.
+    /// The input as JSON.
     pub material: String,
 }

@@ -1,35 +1,35 @@
-//! Which language model lends its voice, where it answers, and what for.
+//! Settings of a language model: endpoint, name and purpose.
 
 use serde::{Deserialize, Serialize};
 
 use novamind_base::notation::printable;
 use novamind_world::params::ParameterError;
 
-/// Seconds that a week may wait where nothing is said.
+/// Default maximum wait per week, in seconds.
 const SECONDS_A_WEEK: u32 = 30;
-/// Seconds that a week may wait at most.
+/// Upper limit of the wait per week, in seconds.
 const MOST_SECONDS_A_WEEK: u32 = 600;
-/// Letters of a name.
+/// Maximum length of a name, in characters.
 const MOST_LETTERS: usize = 200;
 
-/// A language model as a file names it.
+/// A language model as configured in a file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModelSettings {
-    /// Address of an OpenAI-compatible interface, without `/chat/completions`.
+    /// Base URL of an OpenAI-compatible API, without `/chat/completions`.
     pub endpoint: String,
-    /// Name by which the endpoint knows the model.
+    /// Name of the model at the endpoint.
     pub model: String,
-    /// Environment variable that holds the key; none: no key is sent. The key itself is kept nowhere.
+    /// Environment variable with the API key; `None` to send no key. The key itself is never stored.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub key_variable: Option<String>,
-    /// Seconds that a week waits for it at most.
+    /// Maximum wait per week, in seconds.
     #[serde(default = "seconds_a_week")]
     pub seconds_a_week: u32,
-    /// It judges the player's posts.
+    /// Whether it judges the player's posts.
     #[serde(default)]
     pub judge: bool,
-    /// It words the posts of others.
+    /// Whether it words the posts of others.
     #[serde(default = "words")]
     pub words: bool,
 }
@@ -42,7 +42,7 @@ fn words() -> bool {
     true
 }
 
-/// What a run records of its language model.
+/// The part of the settings that a run records.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModelStamp {
@@ -50,29 +50,29 @@ pub struct ModelStamp {
     pub host: String,
     /// Name of the model.
     pub model: String,
-    /// It judges the player's posts.
+    /// Whether it judges the player's posts.
     pub judge: bool,
-    /// It words the posts of others.
+    /// Whether it words the posts of others.
     pub words: bool,
 }
 
 impl ModelStamp {
-    /// What it does in the run, in words: `llama3 at 127.0.0.1:11434 words posts and judges those of the player`.
+    /// Describes its purpose in the run: `llama3 at 127.0.0.1:11434 rewords posts and judges the player's posts`.
     pub fn in_words(&self) -> String {
         let deeds = match (self.words, self.judge) {
-            (true, true) => "words posts and judges those of the player",
-            (_, false) => "words posts",
-            (false, true) => "judges the posts of the player",
+            (true, true) => "rewords posts and judges the player's posts",
+            (_, false) => "rewords posts",
+            (false, true) => "judges the player's posts",
         };
         format!("{} at {} {deeds}", printable(&self.model), printable(&self.host))
     }
 }
 
 impl ModelSettings {
-    /// Reads the text of a file.
+    /// Parses a settings file.
     ///
     /// # Errors
-    /// The first thing that is wrong, with its line and key.
+    /// The first problem, with its line and key.
     pub fn read(source: &str, text: &str) -> Result<ModelSettings, ParameterError> {
         let settings: ModelSettings =
             toml::from_str(text).map_err(|error| ParameterError::of_toml(source, text, &error))?;
@@ -80,29 +80,29 @@ impl ModelSettings {
         Ok(settings)
     }
 
-    /// Whether every value can be.
+    /// Checks all values.
     ///
     /// # Errors
-    /// Key and problem of the first that cannot.
+    /// Key and problem of the first invalid value.
     pub fn check(&self) -> Result<(), (&'static str, String)> {
         self.check_endpoint().map_err(|problem| ("endpoint", problem))?;
         let letters = self.model.chars().count();
         if self.model.trim().is_empty() || letters > MOST_LETTERS || self.model.chars().any(char::is_control)
         {
-            return Err(("model", format!("a model has a name of 1 to {MOST_LETTERS} letters, in one line")));
+            return Err(("model", format!("must have 1 to {MOST_LETTERS} characters in one line")));
         }
         let is_letter = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
         if self.key_variable.as_ref().is_some_and(|name| name.is_empty() || !name.chars().all(is_letter)) {
-            let problem = "name the environment variable that holds the key, for instance MODEL_KEY; the key \
-                           itself does not belong here";
+            let problem = "must be the name of the environment variable with the key, for instance \
+                           MODEL_KEY, not the key itself";
             return Err(("key_variable", problem.to_owned()));
         }
         if !(1..=MOST_SECONDS_A_WEEK).contains(&self.seconds_a_week) {
-            let problem = format!("a week waits for 1 to {MOST_SECONDS_A_WEEK} seconds");
+            let problem = format!("must be 1 to {MOST_SECONDS_A_WEEK} seconds");
             return Err(("seconds_a_week", problem));
         }
         if !self.judge && !self.words {
-            return Err(("words", "it has nothing to do: set words or judge to true".to_owned()));
+            return Err(("words", "the model has nothing to do; set words or judge to true".to_owned()));
         }
         Ok(())
     }
@@ -110,13 +110,12 @@ impl ModelSettings {
     fn check_endpoint(&self) -> Result<(), String> {
         let endpoint = self.endpoint.as_str();
         if endpoint.starts_with("https://") {
-            let problem = "https is not spoken here: let a gateway on this machine speak it, and name the \
-                           gateway's own address, for instance http://127.0.0.1:4000/v1";
+            let problem = "https is not supported; run a gateway on this machine that supports it, and enter \
+                           the gateway's address, for instance http://127.0.0.1:4000/v1";
             return Err(problem.to_owned());
         }
         let example = || {
-            "write an address like http://127.0.0.1:11434/v1, without name, password and question mark"
-                .to_owned()
+            "enter an address like http://127.0.0.1:11434/v1, without user name, password or query".to_owned()
         };
         if !endpoint.starts_with("http://") || endpoint.len() > MOST_LETTERS {
             return Err(example());
@@ -132,18 +131,18 @@ impl ModelSettings {
         if fits { Ok(()) } else { Err(example()) }
     }
 
-    /// Host of the endpoint, with its port.
+    /// Returns the host of the endpoint with its port.
     pub fn host(&self) -> &str {
         let rest = self.endpoint.strip_prefix("http://").unwrap_or(&self.endpoint);
         rest.split('/').next().unwrap_or_default()
     }
 
-    /// Where questions go.
+    /// Returns the URL of requests.
     pub fn address(&self) -> String {
         format!("{}/chat/completions", self.endpoint.trim_end_matches('/'))
     }
 
-    /// What a run records of it.
+    /// Returns the part of the settings that a run records.
     pub fn stamp(&self) -> ModelStamp {
         let ModelSettings { model, judge, words, .. } = self.clone();
         ModelStamp { host: self.host().to_owned(), model, judge, words }
@@ -163,7 +162,7 @@ mod tests {
         assert_eq!((settings.seconds_a_week, settings.judge, settings.words), (30, false, true));
         assert_eq!(settings.address(), "http://127.0.0.1:11434/v1/chat/completions");
         let stamp = settings.stamp();
-        assert_eq!(stamp.in_words(), "llama3 at 127.0.0.1:11434 words posts");
+        assert_eq!(stamp.in_words(), "llama3 at 127.0.0.1:11434 rewords posts");
         assert!(!toml::to_string(&stamp).expect("a table").contains("KEY"));
         for endpoint in ["http://[::1]:8080", "http://box/v1", "http://box.example:80/a-b/v1"] {
             let text = WHOLE.replace("http://127.0.0.1:11434/v1/", endpoint);
@@ -179,9 +178,9 @@ mod tests {
             (format!("{WHOLE}judge = \"yes\"\n"), 3, "boolean"),
             (WHOLE.replace("http:", "https:"), 1, "gateway on this machine"),
             (WHOLE.replace(local, "127.0.0.1:11434"), 1, "endpoint"),
-            (WHOLE.replace(local, "http://me:secret@box/v1"), 1, "without name, password"),
+            (WHOLE.replace(local, "http://me:secret@box/v1"), 1, "without user name, password"),
             (WHOLE.replace(local, "http://box:99999/v1"), 1, "http://127.0.0.1:11434/v1"),
-            (WHOLE.replace(local, "http://box/v1?key=1"), 1, "question mark"),
+            (WHOLE.replace(local, "http://box/v1?key=1"), 1, "or query"),
             (WHOLE.replace(local, "http:///v1"), 1, "endpoint"),
             (WHOLE.replace("llama3", " "), 2, "model"),
             (format!("{WHOLE}key_variable = \"sk-1234\"\n"), 3, "environment variable"),

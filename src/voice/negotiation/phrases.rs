@@ -1,4 +1,4 @@
-//! The phrases that messages of companies are made of. Names in braces are filled in.
+//! Phrases for messages of enterprises. Names in braces are placeholders.
 
 /// Openings and cores of a situation.
 pub(super) struct Phrases {
@@ -6,9 +6,9 @@ pub(super) struct Phrases {
     pub cores: &'static [&'static str],
 }
 
-/// Last sentences of a manner of deciding.
+/// Closing sentences of a decision style.
 pub(super) struct Endings {
-    /// While talks go on.
+    /// During a negotiation.
     pub open: [&'static str; 4],
     /// After an agreement.
     pub settled: [&'static str; 4],
@@ -26,7 +26,7 @@ const ON_AN_OFFER: &[&str] = &[
     "We took the time to calculate your offer through.",
 ];
 
-/// A price of the company's own, close to the offered one.
+/// A counter-offer close to the offered price.
 pub(super) const NEAR: Phrases = Phrases {
     openings: ON_AN_OFFER,
     cores: &[
@@ -41,7 +41,7 @@ pub(super) const NEAR: Phrases = Phrases {
     ],
 };
 
-/// A price of the company's own, clearly below the offered one.
+/// A counter-offer clearly below the offered price.
 pub(super) const APART: Phrases = Phrases {
     openings: ON_AN_OFFER,
     cores: &[
@@ -56,7 +56,7 @@ pub(super) const APART: Phrases = Phrases {
     ],
 };
 
-/// A price of the company's own, far below the offered one.
+/// A counter-offer far below the offered price.
 pub(super) const FAR: Phrases = Phrases {
     openings: ON_AN_OFFER,
     cores: &[
@@ -96,7 +96,7 @@ pub(super) const ACCEPTANCE: Phrases = Phrases {
     ],
 };
 
-/// A subscriber whose price no longer fits what it gets.
+/// A subscriber whose price is too high for the quality it gets.
 pub(super) const THREAT: Phrases = Phrases {
     openings: &[
         "We need to talk about our contract.",
@@ -134,7 +134,7 @@ const ON_A_PLAN: &[&str] = &[
     "We would like to adjust our subscription.",
 ];
 
-/// A subscriber that asks for the price of a higher plan.
+/// A subscriber that requests the price of a higher plan.
 pub(super) const UPGRADE: Phrases = Phrases {
     openings: ON_A_PLAN,
     cores: &[
@@ -149,7 +149,7 @@ pub(super) const UPGRADE: Phrases = Phrases {
     ],
 };
 
-/// A subscriber that asks for the price of a lower plan.
+/// A subscriber that requests the price of a lower plan.
 pub(super) const DOWNGRADE: Phrases = Phrases {
     openings: ON_A_PLAN,
     cores: &[
@@ -164,7 +164,7 @@ pub(super) const DOWNGRADE: Phrases = Phrases {
     ],
 };
 
-/// Talks that take long, whatever the manner.
+/// Long negotiations, for all decision styles.
 pub(super) const LATE: [&str; 6] = [
     "We have been writing back and forth for a while and would like to come to an end.",
     "Our patience with this round of letters is not endless.",
@@ -174,7 +174,7 @@ pub(super) const LATE: [&str; 6] = [
     "Please make the next letter count.",
 ];
 
-/// Last sentences by manner: quick, numbers, committee, careful, partner.
+/// Closing sentences by decision style: quick, numbers, committee, careful, partner.
 pub(super) const ENDINGS: [Endings; 5] = [
     Endings {
         open: [

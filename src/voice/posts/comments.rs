@@ -1,4 +1,4 @@
-//! Comments on the player's posts: a sentence or two in the tone of a group, for the reason the judge found.
+//! Comments on the player's posts: one or two sentences in the tone of a group, with the judge's reason.
 
 use std::borrow::Cow;
 use std::sync::LazyLock;
@@ -10,10 +10,10 @@ use novamind_world::identifiers::Group;
 
 static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
     Grammar::read(include_str!("../../../assets/voice/comments.toml"))
-        .expect("the shipped grammars are tested")
+        .expect("the bundled grammars are valid")
 });
 
-/// A comment of a group; `judgement` says why, where it is known.
+/// Writes a comment of a group; `judgement` has the reason if it is known.
 pub(super) fn about_own_post(
     group: Group,
     effect: f64,
@@ -39,7 +39,7 @@ fn context(group: Group, effect: f64, judgement: Option<&Judgement>) -> Context 
         .with("my", person("my", "our"))
 }
 
-/// The leading term that pulls the way of the reaction, and what the post was about.
+/// Returns the largest term in the direction of the reaction, and the topic of the post.
 fn reason(effect: f64, judgement: Option<&Judgement>) -> (Cow<'static, str>, String) {
     let leading = judgement.map(Judgement::leading).unwrap_or_default();
     let of_kind = |name: &str| leading.iter().find(|term| term.name == name);

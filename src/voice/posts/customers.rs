@@ -1,4 +1,4 @@
-//! Posts of customers: what they say, given what moves them.
+//! Posts of customers about their experience.
 
 use std::sync::LazyLock;
 
@@ -12,26 +12,25 @@ static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
         include_str!("../../../assets/voice/customers.toml"),
         include_str!("../../../assets/voice/groups.toml"),
     ];
-    Grammar::read_all(&sources).expect("the shipped grammars are tested")
+    Grammar::read_all(&sources).expect("the bundled grammars are valid")
 });
 
-/// Days after which somebody is no longer new, and after which they are an old customer.
+/// Days after which an author is no longer new, and after which they are a long-term customer.
 const SETTLED: u32 = 30;
 const VETERAN: u32 = 120;
-/// One of so many casual authors writes without capitals.
+/// One in this many casual authors writes without capitals.
 const WITHOUT_CAPITALS: u32 = 9;
 
-/// One draft of a post.
 pub(super) fn draft(context: &Context, choose: Chooser<'_>) -> String {
     GRAMMAR.write("post", context, choose)
 }
 
-/// Whether an author writes without capitals; everybody keeps to their habit.
+/// Returns whether an author writes without capitals, which is constant for each author.
 pub(super) fn without_capitals(author: &PostAuthor) -> bool {
     Register::of(Some(author.group)) == Register::Casual && author.n.is_multiple_of(WITHOUT_CAPITALS)
 }
 
-/// What the grammar is told about a post.
+/// Returns the grammar context of a post.
 pub(super) fn context(author: &PostAuthor, opinion: &Opinion, tone: Sentiment, params: &Params) -> Context {
     let company = author.group.is_enterprise();
     let person = |individual: &'static str, of_company: &'static str| {
@@ -89,7 +88,6 @@ fn tone_id(tone: Sentiment) -> &'static str {
     }
 }
 
-/// The form a post takes.
 fn shape(cause: Cause, tone: Sentiment) -> &'static str {
     match (cause, tone) {
         (Cause::Cancelled, _) => "leaving",
@@ -102,7 +100,7 @@ fn shape(cause: Cause, tone: Sentiment) -> &'static str {
     }
 }
 
-/// What a post is about, as the grammar names it.
+/// Returns the grammar's name for the subject of a post.
 fn situation(opinion: &Opinion) -> &'static str {
     match opinion.cause {
         Cause::Overload => "overload",
@@ -168,7 +166,7 @@ pub(super) mod tests {
     ];
     const TONES: [Sentiment; 3] = [Sentiment::Positive, Sentiment::Neutral, Sentiment::Negative];
 
-    /// Every situation that can occur, with its tones.
+    /// All possible situations with their tones.
     pub(in crate::posts) fn situations() -> Vec<(Opinion, Sentiment)> {
         let mut list = Vec::new();
         for tone in TONES {
@@ -197,7 +195,7 @@ pub(super) mod tests {
         let params = Params::shipped();
         for group in Group::all() {
             for (mut opinion, tone) in situations() {
-                // The poorest case: nothing optional is known.
+                // The minimal context without optional values.
                 (opinion.plan, opinion.price, opinion.waiting_days, opinion.downtime_minutes) =
                     (None, 0.0, 0, 0);
                 let context = context(&author(group), &opinion, tone, &params);

@@ -1,23 +1,23 @@
-//! A memory of what was written lately, so that the feed does not repeat itself.
+//! A memory of recent posts that prevents repetition in the feed.
 
 use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-/// Posts within which no text comes twice.
+/// Number of posts within which no text is repeated.
 pub const MEMORY: usize = 60;
-/// Posts within which two should not begin alike.
+/// Number of posts within which two should not start with the same words.
 const OPENINGS: usize = 15;
-/// Drafts that are compared before the freshest is taken.
+/// Number of drafts compared for each post.
 const DRAFTS: usize = 24;
-/// Drafts that are tried at most to find one that is new as a whole.
+/// Maximum number of drafts tried to find a text that is not repeated.
 const MOST_DRAFTS: usize = 400;
 
-/// The last texts, oldest first.
+/// Recent texts, oldest first.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Recent(VecDeque<Remembered>);
 
-/// A text without capitals, taken apart once: it is compared with hundreds of drafts.
+/// A lowercase text, split once because it is compared with hundreds of drafts.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct Remembered {
     text: String,
@@ -35,8 +35,8 @@ impl Remembered {
 }
 
 impl Recent {
-    /// Takes the freshest of some drafts, and remembers it. A text that was written within the last 60 is taken
-    /// only when hundreds of drafts bring nothing else.
+    /// Picks the draft with the least repetition and remembers it. A text of the last 60 posts is repeated
+    /// only if hundreds of drafts contain nothing else.
     pub fn freshest(&mut self, mut draft: impl FnMut() -> String) -> String {
         let mut best: Option<(usize, String)> = None;
         for number in 0..MOST_DRAFTS {
@@ -62,7 +62,7 @@ impl Recent {
         self.0.push_back(Remembered::of(text));
     }
 
-    /// How much of a text was read lately: sentences, the beginning, or, far worse, all of it.
+    /// Returns how much of a text repeats recent posts: sentences, the opening, or, with the largest weight, all of it.
     fn staleness(&self, text: &str) -> usize {
         let text = text.to_lowercase();
         if self.0.iter().any(|other| other.text == text) {
@@ -75,12 +75,12 @@ impl Recent {
     }
 }
 
-/// The sentences of a text, without their marks.
+/// Returns the sentences of a text without punctuation.
 fn sentences(text: &str) -> impl Iterator<Item = &str> {
     text.split(['.', '!', '?', ':']).map(str::trim).filter(|sentence| sentence.len() > 3)
 }
 
-/// The first three words.
+/// Returns the first three words.
 fn opening(text: &str) -> impl Iterator<Item = &str> {
     text.split_whitespace().take(3)
 }

@@ -1,8 +1,8 @@
-//! The words of posts and comments (docs/mechanics/market/social/texts.md).
+//! Wording of posts and comments (docs/mechanics/market/social/texts.md).
 //!
-//! Facts say why somebody writes; these grammars say it. What a post says is true for its author, and no more than a
-//! reader could learn from a person: causes and moods, prices and plans, never a hidden number. The words of a post
-//! come from a stream of their own, so they touch nothing of the world.
+//! Facts contain the reason for a post; grammars turn it into text. A post is true for its author and
+//! contains only what a person could know: causes and opinions, prices and plans, never hidden numbers. The
+//! wording uses its own random stream and does not affect the world.
 
 mod comments;
 mod customers;
@@ -20,14 +20,15 @@ use novamind_world::events::{Matter, Post};
 use novamind_world::params::Params;
 use novamind_world::random::{Part, Streams};
 
-/// Puts posts into words, one after the other: it remembers the last ones so as not to repeat them.
+/// Writes posts in order and remembers recent ones to avoid repetition.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Writer {
     recent: Recent,
 }
 
 impl Writer {
-    /// The text of a post; `judgement` is how the group that a comment speaks for took the player's post.
+    /// Returns the text of a post; for comments, `judgement` is the reaction of the comment's group to the
+    /// player's post.
     pub fn write(
         &mut self,
         post: &Post,

@@ -1,4 +1,4 @@
-//! Names of profiles: some customers of the initial groups are known by one.
+//! Names of profiles for some customers of the initial groups.
 
 use novamind_world::events::PostAuthor;
 use novamind_world::random::{Part, Streams};
@@ -10,7 +10,7 @@ const E1: [&str; 2] = ["Harbor Freight Desk", "Millbrook Operations"];
 const E2: [&str; 2] = ["Castell & Byrne", "Northlight Biosciences"];
 const E3: [&str; 2] = ["Meridian Group", "Aurelia Holdings"];
 
-/// The name a customer's profile goes by; none in the groups that were to be discovered.
+/// Returns the profile name of a customer, or `None` in discoverable groups.
 pub fn profile_name(author: &PostAuthor, streams: &Streams) -> Option<&'static str> {
     let names: &[&'static str] = match author.group.id() {
         "S1" => &S1,

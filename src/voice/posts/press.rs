@@ -1,4 +1,4 @@
-//! Posts of the market observer: readings of the economy, its mood, and moves of rivals.
+//! Posts of the market observer: readings of the economy, its current state, and competitor events.
 
 use std::sync::LazyLock;
 
@@ -7,7 +7,7 @@ use novamind_world::events::Severity;
 use novamind_world::events::{Reading, Trend};
 
 static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
-    Grammar::read(include_str!("../../../assets/voice/press.toml")).expect("the shipped grammars are tested")
+    Grammar::read(include_str!("../../../assets/voice/press.toml")).expect("the bundled grammars are valid")
 });
 
 /// Points of view on the economy, in the order of their numbers.
@@ -25,11 +25,11 @@ const ECONOMY_VIEWS: [&str; 11] = [
     "journalist",
 ];
 
-/// Points of view on rivals, in the order of their numbers.
+/// Points of view on competitors, in the order of their numbers.
 const RIVAL_VIEWS: [&str; 7] =
     ["analyst", "journalist", "watcher", "insider", "investor", "reviewer", "evaluator"];
 
-/// What every post of the press is told; most of it is empty.
+/// Returns the common context of press posts; most values are empty.
 fn context(way: &str, view: &str) -> Context {
     let empty = ["trend", "seen", "pmi", "change", "name", "severity", "estimate"];
     let context = Context::default().with("way", way).with("view", view);
@@ -44,7 +44,7 @@ fn way(trend: Trend) -> &'static str {
     }
 }
 
-/// A published reading: value and change with one decimal.
+/// Writes a post about a published reading: value and change with one decimal.
 pub(super) fn about_reading(reading: &Reading, choose: Chooser<'_>) -> String {
     let change = match reading.change {
         up if up > 0.0 => format!("up {up:.1} points"),
@@ -58,7 +58,7 @@ pub(super) fn about_reading(reading: &Reading, choose: Chooser<'_>) -> String {
     GRAMMAR.write("reading", &context, choose)
 }
 
-/// The mood of the economy; every second post names today's index.
+/// Writes a post about the economy; every second post names today's index.
 pub(super) fn about_economy(trend: Trend, pmi: f64, view: u8, choose: Chooser<'_>) -> String {
     let view = ECONOMY_VIEWS[usize::from(view) % ECONOMY_VIEWS.len()];
     let with_number = choose(2) == 0;
@@ -71,7 +71,7 @@ pub(super) fn about_economy(trend: Trend, pmi: f64, view: u8, choose: Chooser<'_
     GRAMMAR.write("economy", &context, choose)
 }
 
-/// A rival has moved: its name, and the author's estimate with four decimals.
+/// Writes a post about a competitor event: its name, and the author's estimate with four decimals.
 pub(super) fn about_rival(
     name: &str,
     view: u8,

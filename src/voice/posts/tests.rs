@@ -1,4 +1,4 @@
-//! A feed of many posts, read with a machine's eye: no repetition, no slips that a machine can see.
+//! Tests of a long feed: no repetition and no mechanically detectable errors.
 
 use super::customers::tests::{author, situations};
 use super::*;
@@ -69,7 +69,7 @@ fn no_slip_that_a_machine_can_see() {
             assert!(!text.contains(slip), "{slip:?} in {text}");
         }
         let words: Vec<String> = text.split_whitespace().map(str::to_lowercase).collect();
-        assert!(words.windows(2).all(|pair| pair[0] != pair[1]), "a word comes twice: {text}");
+        assert!(words.windows(2).all(|pair| pair[0] != pair[1]), "a word is repeated: {text}");
         for pair in ["i are", "we am", "i was we", "we is", "our my", "my our"] {
             assert!(!words.join(" ").contains(pair), "{pair:?} in {text}");
         }
@@ -96,7 +96,7 @@ fn companies_speak_as_we_and_people_as_i() {
                 assert!(!says(word), "{word} in {text}");
             }
         } else if author.group.id() != "D_S04" {
-            // Agency people speak for their team now and then.
+            // Authors at agencies sometimes write for their team.
             assert!(!says("we") && !says("we're"), "{text}");
         }
     }

@@ -1,27 +1,27 @@
-//! Numbers and profiles as people say them.
+//! Numbers and profiles in colloquial words.
 
 use novamind_base::notation::{cents, dollars};
 use novamind_world::events::PostAuthor;
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 
-/// How people of a group talk.
+/// Language register of a group.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Register {
     /// Among friends.
     Casual,
     /// Plainly.
     Plain,
-    /// As one whose word is checked.
+    /// With professional precision.
     Expert,
     /// Among engineers.
     Technical,
-    /// For a company.
+    /// On behalf of an enterprise.
     Corporate,
 }
 
 impl Register {
-    /// The register of a group; the press and strangers talk plainly.
+    /// Returns the register of a group; plain for the press and unknown authors.
     pub fn of(group: Option<Group>) -> Register {
         let Some(group) = group else { return Register::Plain };
         match group.id() {
@@ -33,7 +33,7 @@ impl Register {
         }
     }
 
-    /// Word in the grammars.
+    /// Identifier in the grammars.
     pub fn id(self) -> &'static str {
         match self {
             Register::Casual => "casual",
@@ -56,7 +56,7 @@ fn counted(count: u32, unit: &str) -> String {
     format!("{number} {unit}{plural}")
 }
 
-/// A time in days, weeks or months, as one says it: `three weeks`.
+/// Returns a colloquial time span in days, weeks or months: `three weeks`.
 pub fn time_span(days: u32) -> String {
     match days {
         0 | 1 => "one day".to_owned(),
@@ -67,7 +67,7 @@ pub fn time_span(days: u32) -> String {
     }
 }
 
-/// The length of an outage; none where there was none.
+/// Returns the length of an outage, or `None` without an outage.
 pub fn outage_span(minutes: u32) -> Option<String> {
     match minutes {
         0 => None,
@@ -78,7 +78,7 @@ pub fn outage_span(minutes: u32) -> Option<String> {
     }
 }
 
-/// How many seats, roughly: a company does not count itself in public.
+/// Returns an approximate number of seats, because enterprises do not state it exactly in public.
 pub fn seats_roughly(seats: u32) -> &'static str {
     match seats {
         0..60 => "a few dozen seats",
@@ -90,7 +90,7 @@ pub fn seats_roughly(seats: u32) -> &'static str {
     }
 }
 
-/// A price without needless cents; none for nothing.
+/// Formats a price without unnecessary cents; `None` for 0.
 pub fn price(amount: f64) -> Option<String> {
     match amount {
         _ if amount < 0.005 => None,
@@ -99,17 +99,17 @@ pub fn price(amount: f64) -> Option<String> {
     }
 }
 
-/// Role of an author, in words.
+/// Returns the role of an author.
 pub fn role(author: &PostAuthor, params: &Params) -> String {
     pick(&params.personas.group[author.group.index()].role, author.persona.0[1])
 }
 
-/// Trade of an author, in words.
+/// Returns the industry of an author.
 pub fn trade(author: &PostAuthor, params: &Params) -> String {
     pick(&params.personas.group[author.group.index()].industry, author.persona.0[0])
 }
 
-/// Whether an author is at home with technology.
+/// Returns whether an author has technical skill.
 pub fn skilled(author: &PostAuthor, params: &Params) -> bool {
     let axis = if author.group.is_enterprise() {
         (&params.personas.enterprise.tech_savvy, author.persona.0[2])
@@ -119,14 +119,13 @@ pub fn skilled(author: &PostAuthor, params: &Params) -> bool {
     ["advanced", "expert"].contains(&pick(axis.0, axis.1).as_str())
 }
 
-/// Whether an individual has long been in the trade.
+/// Returns whether an individual has long experience.
 pub fn senior(author: &PostAuthor, params: &Params) -> bool {
     let levels = &params.personas.individual.experience_levels;
     !author.group.is_enterprise()
         && ["experienced", "veteran"].contains(&pick(levels, author.persona.0[2]).as_str())
 }
 
-/// A label without its hyphens.
 fn pick(labels: &[String], at: u8) -> String {
     labels.get(usize::from(at)).map_or(String::new(), |label| label.replace('-', " "))
 }

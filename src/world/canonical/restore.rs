@@ -1,45 +1,45 @@
-//! Reading canonical bytes back. Whatever the bytes are, reading ends with a value or with none.
+//! Restores values from canonical bytes. Invalid bytes result in `None`, never in a panic.
 
 use indexmap::IndexMap;
 
 use crate::identifiers::{ByChannel, ByGroup, ByPlan, Channel, Group, Plan};
 
-/// Canonical bytes that are still to be read.
+/// A reader of canonical bytes.
 pub struct CanonicalReader<'a> {
     rest: &'a [u8],
 }
 
 impl<'a> CanonicalReader<'a> {
-    /// Begins with the first byte.
+    /// Creates a reader that starts at the first byte.
     pub fn new(bytes: &'a [u8]) -> CanonicalReader<'a> {
         CanonicalReader { rest: bytes }
     }
 
-    /// The next bytes; none if there are fewer.
+    /// Returns the next `count` bytes, or `None` if fewer remain.
     pub fn take(&mut self, count: usize) -> Option<&'a [u8]> {
         let (taken, rest) = self.rest.split_at_checked(count)?;
         self.rest = rest;
         Some(taken)
     }
 
-    /// The next value.
+    /// Reads the next value.
     pub fn read<T: Restore>(&mut self) -> Option<T> {
         T::restore(self)
     }
 
-    /// Bytes that are still to be read.
+    /// Returns the number of unread bytes.
     pub fn left(&self) -> usize {
         self.rest.len()
     }
 }
 
-/// A part of the state that can be read back from its canonical bytes.
+/// A part of the state that can be restored from its canonical bytes.
 pub trait Restore: Sized {
-    /// Reads the next value; none if the bytes are not those of one.
+    /// Reads the next value. Returns `None` if the bytes are invalid.
     fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self>;
 }
 
-/// The value whose canonical bytes these are, all of them.
+/// Restores a value from all of `bytes`. Returns `None` if any are left over.
 #[cfg(test)]
 pub fn restored<T: Restore>(bytes: &[u8]) -> Option<T> {
     let mut reader = CanonicalReader::new(bytes);
@@ -75,7 +75,7 @@ impl Restore for bool {
     }
 }
 
-/// Length of a list or text that is read next; each of its values takes a byte or more.
+/// Reads the length of a list or text. Each element takes at least one byte, so a larger length is invalid.
 fn length(reader: &mut CanonicalReader<'_>) -> Option<usize> {
     let length = usize::try_from(reader.read::<u64>()?).ok()?;
     (length <= reader.rest.len()).then_some(length)

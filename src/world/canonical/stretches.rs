@@ -1,7 +1,7 @@
-//! The hash of a large value on several threads.
+//! Hashes a large value on several threads.
 //!
-//! BLAKE3 is a tree over pieces of its input, so each thread collects bytes and hashes them while they are in its
-//! cache; nobody waits for bytes that another thread has collected. The hash is the one of all bytes in a row.
+//! BLAKE3 is a tree over parts of its input, so each thread collects and hashes its own bytes while they are
+//! in its cache. The result equals the hash of all bytes in sequence.
 
 use std::ops::Range;
 
@@ -10,30 +10,30 @@ use rayon::prelude::*;
 
 use super::CanonicalHasher;
 
-/// Bytes that are hashed together, a power of two: a subtree of the hash. They stay in the cache of a core.
+/// Bytes of one subtree of the hash: a power of two that fits into the cache of a core.
 const SUBTREE: usize = 1 << 20;
 
-/// Subtrees that one thread hashes after each other, with the memory of the first; fewer where that would leave a second
-/// thread without any.
+/// Subtrees that one thread hashes in a row to reuse its buffer. Smaller inputs use fewer, so that a second
+/// thread has work.
 const SUBTREES_TOGETHER: usize = 4;
 
-/// Some canonical bytes whose number is known before they are collected.
+/// A sequence of canonical bytes with a known length.
 pub struct Stretch<'a> {
     length: usize,
     feed: Box<dyn Fn(&mut CanonicalHasher) + Sync + 'a>,
 }
 
 impl<'a> Stretch<'a> {
-    /// So many bytes, fed by a function.
+    /// Creates a segment of `length` bytes that `feed` writes.
     pub fn new(length: usize, feed: impl Fn(&mut CanonicalHasher) + Sync + 'a) -> Stretch<'a> {
         Stretch { length, feed: Box::new(feed) }
     }
 }
 
-/// Hash of the bytes of these stretches, one after the other.
+/// Returns the hash of the bytes of all `stretches` in order.
 ///
 /// # Panics
-/// A stretch feeds another number of bytes than it promised.
+/// If a segment feeds a different number of bytes than its length.
 pub fn hash_of_stretches(stretches: &[Stretch<'_>]) -> blake3::Hash {
     let mut total = 0;
     let begins: Vec<usize> = stretches
@@ -50,7 +50,7 @@ pub fn hash_of_stretches(stretches: &[Stretch<'_>]) -> blake3::Hash {
         for (stretch, begin) in stretches[first..last].iter().zip(&begins[first..last]) {
             (stretch.feed)(collector);
             let until = begin + stretch.length - begins[first];
-            assert_eq!(collector.pending.len(), until, "a stretch is as long as it promised");
+            assert_eq!(collector.pending.len(), until, "a segment has its declared length");
         }
         let skipped = from - begins.get(first).unwrap_or(&0);
         skipped..skipped + to - from
@@ -80,7 +80,7 @@ pub fn hash_of_stretches(stretches: &[Stretch<'_>]) -> blake3::Hash {
     merge_subtrees_root(&merged(left), &merged(right), Mode::Hash)
 }
 
-/// Value of a tree over subtrees that are not all there are.
+/// Returns the chaining value of a tree that is not the whole input.
 fn merged(subtrees: &[ChainingValue]) -> ChainingValue {
     match subtrees {
         [single] => *single,
@@ -91,7 +91,7 @@ fn merged(subtrees: &[ChainingValue]) -> ChainingValue {
     }
 }
 
-/// The left side of a tree is the largest power of two that leaves something for the right side.
+/// Splits at the largest power of two that leaves at least one subtree on the right.
 fn halves(subtrees: &[ChainingValue]) -> (&[ChainingValue], &[ChainingValue]) {
     subtrees.split_at(subtrees.len().next_power_of_two() / 2)
 }

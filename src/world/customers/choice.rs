@@ -1,17 +1,17 @@
-//! The first decision: which plan a lead picks, whether an individual takes it, and whether a company is
-//! interested at all (docs/mechanics/customers/choice.md).
+//! The first decision: which plan a lead picks, whether an individual accepts it, and whether an enterprise
+//! requests an offer at all (docs/mechanics/customers/choice.md).
 
 use super::curve::{Curve, required_quality};
 use crate::identifiers::{ByPlan, Plan};
 use crate::params::Params;
 use crate::quality::quota_factor;
 
-/// What is on offer to a lead of one group today, before its own demand and discount.
+/// A plan as offered to the leads of a group today, before individual demand and discounts.
 #[derive(Debug, Clone, Copy)]
 pub struct Offer {
     /// List price, dollars a month.
     pub price: f64,
-    /// Delivered quality (less the service penalty where fidelity asks for it).
+    /// Delivered quality, minus the service penalty if the fidelity setting asks for it.
     pub quality: f64,
     /// Quota, units.
     pub quota: f64,
@@ -20,23 +20,23 @@ pub struct Offer {
 /// A lead's choice among the plans.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Choice {
-    /// The plan with the largest surplus, A if none is positive.
+    /// The plan with the largest surplus, or A if no surplus is positive.
     pub plan: Plan,
     /// Its price after the lead promotion, dollars a month.
     pub price: f64,
-    /// Its quality as the lead sees it, before noise.
+    /// Its quality as the lead perceives it, before noise.
     pub quality: f64,
 }
 
-/// A plan as a lead sees it: its price after the discount, its quality with the quota.
+/// Returns a plan with the lead's discounted price and the quality that its quota leaves.
 pub fn offered(offer: &Offer, plan: Plan, discount: f64, demand: f64, params: &Params) -> Choice {
     let price = (offer.price - discount).max(params.billing.effective_price_min);
     Choice { plan, price, quality: offer.quality * quota_factor(offer.quota, demand, &params.quality) }
 }
 
-/// Picks the plan with the largest surplus above 0 (ties: the earlier plan); A if there is none.
+/// Picks the plan with the largest surplus above 0 (ties: the earlier plan), or A if there is none.
 ///
-/// `demand` is what quotas are compared with; the curve already contains the market's drift once.
+/// Quotas are compared with `demand`. The curve already includes the market's drift once.
 pub fn choose_plan(
     offers: &ByPlan<Offer>,
     discount: f64,
@@ -48,7 +48,7 @@ pub fn choose_plan(
     let mut best = (params.participation.lead_min_satisfaction_exclusive, None);
     for plan in Plan::ALL {
         let choice = candidate(plan);
-        // No price requires less than the floor of the curve: most plans need no closer look.
+        // No price requires less than the minimum of the curve, so most plans need no further evaluation.
         let most = choice.quality - curve.q_min.min(curve.q_max);
         if choice.price > curve.c_max || most <= best.0 {
             continue;
@@ -61,12 +61,13 @@ pub fn choose_plan(
     best.1.unwrap_or_else(|| candidate(Plan::A))
 }
 
-/// Whether an individual takes its choice: within the budget, and quality times noise at least as required.
+/// Returns whether an individual accepts its choice: the price is within the budget, and quality times noise
+/// is at least the required quality.
 pub fn accepts(choice: &Choice, noise: f64, curve: &Curve, params: &Params) -> bool {
     choice.price <= curve.c_max && choice.quality * noise >= required_quality(choice.price, curve, params)
 }
 
-/// Whether a company finds any plan good enough for nothing: no price, no noise.
+/// Returns whether any plan is good enough for an enterprise at price 0, without noise.
 pub fn passes_gate(offers: &ByPlan<Offer>, demand: f64, curve: &Curve, params: &Params) -> bool {
     let required = required_quality(0.0, curve, params);
     offers.iter().any(|offer| offer.quality * quota_factor(offer.quota, demand, &params.quality) >= required)

@@ -1,9 +1,8 @@
-//! Active subscribers as columns, in blocks of a fixed run of customer numbers.
+//! Active subscribers in columns, split into blocks by running customer number.
 //!
-//! A block holds the active ones among customers `first ..= first + BLOCK - 1` of one group, in the order of
-//! their numbers. A daily sweep goes through whole blocks, on any thread; a customer's random word stands at
-//! its fixed place of the block's stream, so nobody's fate shifts another's
-//! (docs/mechanics/randomness.md#blocks).
+//! A block holds the active customers `first ..= first + BLOCK - 1` of one group, in the order of their
+//! numbers. Sweeps process whole blocks on any thread. Each customer has a fixed position in the random
+//! stream of its block, so one customer's draws never affect another's (docs/mechanics/randomness.md#blocks).
 
 use crate::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore};
 use crate::identifiers::Plan;
@@ -29,7 +28,7 @@ macro_rules! columns {
         pub struct $Block { $($(#[$doc])* pub $column: Vec<$kind>,)* }
 
         impl $Block {
-            /// An empty one with room for so many rows.
+            /// Creates an empty block with capacity for `rows` rows.
             pub fn with_room(rows: usize) -> $Block {
                 $Block { $($column: Vec::with_capacity(rows),)* }
             }
@@ -49,18 +48,18 @@ macro_rules! columns {
                 $(self.$column.insert(at, row.$column);)*
             }
 
-            /// The row at a position.
+            /// Returns the row at a position.
             pub fn row(&self, at: usize) -> $Row {
                 $Row { $($column: self.$column[at],)* }
             }
 
-            /// Number of its canonical bytes.
+            /// Returns the number of canonical bytes.
             pub fn canonical_length(&self) -> usize {
-                // A value of a column has as many canonical bytes as it takes in memory.
+                // A column value has as many canonical bytes as it occupies in memory.
                 0 $(+ size_of::<u64>() + self.$column.len() * size_of::<$kind>())*
             }
 
-            /// Drops the rows at these ascending positions; the others keep their order.
+            /// Removes the rows at these ascending positions; the others keep their order.
             pub fn remove(&mut self, gone: &[usize]) {
                 if !gone.is_empty() {
                     $(drop_positions(&mut self.$column, gone);)*
@@ -69,7 +68,7 @@ macro_rules! columns {
         }
 
         impl $Row {
-            /// The columns in which another row differs: name, own value, the other's.
+            /// Returns the columns in which `other` differs: name, own value, other value.
             pub fn differing(&self, other: &$Row) -> Vec<(&'static str, String, String)> {
                 let mut found = Vec::new();
                 $(if self.$column != other.$column {
@@ -111,7 +110,7 @@ macro_rules! columns {
 }
 
 columns! {
-    /// The active subscribers of a run of customer numbers, one vector per column.
+    /// The active subscribers of a range of customer numbers, one vector per column.
     block Block,
     /// One active subscriber.
     row Subscriber {
@@ -123,43 +122,43 @@ columns! {
         subscription: u32,
         /// Plan.
         plan: Plan,
-        /// Billed on days with this remainder by 30.
+        /// Billed on days with this remainder modulo 30.
         billing_day: u8,
-        /// Whether the first bill was made.
+        /// Whether the first bill was issued.
         billed_once: bool,
         /// Day the subscription started.
         start_day: u32,
-        /// Steepness of the lower half of the curve, with its own drift.
+        /// Steepness of the lower half of the curve, including individual drift.
         steepness_left: f64,
         /// Steepness of the upper half of the curve.
         steepness_right: f64,
-        /// Budget with its own drift, dollars a month.
+        /// Budget including individual drift, dollars a month.
         c_max: f64,
-        /// Floor of quality with its own drift.
+        /// Minimum quality including individual drift.
         q_min: f64,
-        /// Ceiling of quality with its own drift.
+        /// Maximum quality including individual drift.
         q_max: f64,
         /// Mean demand, units a day and seat.
         usage_demand: f64,
-        /// Quality lost to ads of full strength.
+        /// Quality lost to ads at full strength.
         ads_quality_sensitivity: f64,
-        /// Revenue of ads of full strength, dollars a day and seat.
+        /// Revenue from ads at full strength, dollars a day and seat.
         ads_return_sensitivity: f64,
-        /// Seats, which drift for companies; whole seats count.
+        /// Seats. They drift for enterprises; only whole seats count.
         seats: f64,
-        /// Price the discounts are taken from, dollars a month and seat.
+        /// Price before discounts, dollars a month and seat.
         listed_price: f64,
         /// Discount in force, dollars a month and seat.
         promotion: f64,
         /// Price in force, dollars a month and seat.
         effective_price: f64,
-        /// Budget remembered at the last bill, dollars a month.
+        /// Budget stored with the last bill, dollars a month.
         effective_c_max: f64,
         /// Usage of this billing period, units a day for the whole account.
         usage_rate: f64,
         /// Units used in this billing period.
         period_usage: u64,
-        /// Satisfaction, without bounds.
+        /// Satisfaction, unbounded.
         satisfaction: f64,
         /// Relationship, 0..=1.
         relationship: f64,
@@ -183,28 +182,28 @@ fn drop_positions<T: Copy>(column: &mut Vec<T>, gone: &[usize]) {
 }
 
 impl Block {
-    /// Number of active subscribers.
+    /// Returns the number of active subscribers.
     #[inline]
     pub fn len(&self) -> usize {
         self.n.len()
     }
 
-    /// Whether nobody is active.
+    /// Returns whether there are no active subscribers.
     pub fn is_empty(&self) -> bool {
         self.n.is_empty()
     }
 
-    /// How many have an open issue.
+    /// Returns how many subscribers have an open issue.
     pub fn open_issues(&self) -> u32 {
         self.open_issue_days.iter().filter(|days| **days > 0).count() as u32
     }
 
-    /// Position of the customer with this running number.
+    /// Returns the position of the customer with running number `n`.
     pub fn position(&self, n: u32) -> Option<usize> {
         self.n.binary_search(&n).ok()
     }
 
-    /// Current willingness curve of a row, without the market's expectations.
+    /// Returns the participation curve of a row, without the market's expectations.
     #[inline]
     pub fn curve(&self, at: usize) -> Curve {
         Curve {
@@ -216,9 +215,10 @@ impl Block {
         }
     }
 
-    /// Positions of those who are billed on days with this remainder.
+    /// Returns the positions of subscribers who are billed on days with this remainder.
     pub fn due(&self, billing_day: u8) -> Vec<usize> {
-        // Those who came on one day stand side by side: most blocks hold nobody who is due, and the search says so fast.
+        // Customers who arrived on the same day are adjacent, so most blocks have none due and a search
+        // detects that quickly.
         if !self.billing_day.contains(&billing_day) {
             return Vec::new();
         }
@@ -226,21 +226,21 @@ impl Block {
         days.filter(|(_, day)| **day == billing_day).map(|(at, _)| at).collect()
     }
 
-    /// Place of a row in its block's stream of random words.
+    /// Returns the position of a row in the random words of its block.
     #[inline]
     pub fn place(&self, at: usize) -> usize {
         place_in_block(self.n[at])
     }
 }
 
-/// Place of a running number in its block's stream of random words.
+/// Returns the position of a running number in the random words of its block.
 #[inline]
 pub fn place_in_block(n: u32) -> usize {
     ((n - 1) % BLOCK) as usize
 }
 
-/// Sums of columns, each added up in its order. Every addition waits for the one before, so several columns are added
-/// up in the time of one.
+/// Adds up several columns, each in order. Each addition depends on the previous one, so interleaving columns
+/// hides the latency.
 pub fn sums<const COLUMNS: usize>(columns: [&[f64]; COLUMNS]) -> [f64; COLUMNS] {
     let common = columns.iter().map(|column| column.len()).min().unwrap_or(0);
     let heads = columns.map(|column| &column[..common]);

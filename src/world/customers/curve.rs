@@ -3,7 +3,7 @@
 
 use crate::params::{Params, Participation, RequiredQuality};
 
-/// A customer's willingness curve.
+/// A customer's participation curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Curve {
     /// Steepness of the lower half, 0.2..=6.
@@ -12,14 +12,14 @@ pub struct Curve {
     pub steepness_right: f64,
     /// Budget, dollars a month (and seat).
     pub c_max: f64,
-    /// Quality required for next to nothing.
+    /// Quality required at a price near 0.
     pub q_min: f64,
-    /// Quality required at the budget and above.
+    /// Quality required at the budget and above it.
     pub q_max: f64,
 }
 
 impl Curve {
-    /// The curve with expectations and budget moved by the market: q + dq, max(floor, c + dc).
+    /// Returns the curve with expectations and budget moved by the market: q + dq, max(floor, c + dc).
     pub fn drifted(self, dq: f64, dc: f64, c_max_floor: f64) -> Curve {
         Curve {
             q_min: self.q_min + dq,
@@ -29,22 +29,22 @@ impl Curve {
         }
     }
 
-    /// The curve with another budget.
+    /// Returns the curve with another budget.
     pub fn with_budget(self, c_max: f64) -> Curve {
         Curve { c_max, ..self }
     }
 }
 
-/// Logistic function with the argument clamped.
+/// The logistic function with a clamped argument.
 #[inline]
 pub fn sigmoid(z: f64, participation: &Participation) -> f64 {
     1.0 / (1.0 + libm::exp(-z.clamp(participation.sigmoid_input_min, participation.sigmoid_input_max)))
 }
 
-/// Quality required at a price of at least 0, in dollars a month: req(C; sL, sR, c, q_min, q_max).
+/// Returns the quality required at a price of at least 0, in dollars a month: req(C; sL, sR, c, q_min, q_max).
 ///
-/// Above the budget it is q_max. Below, the released form has two logistic halves that jump at half the
-/// budget; the paper's form (`required_quality = "blended"`) blends both sigmoids.
+/// Above the budget it is q_max. Below the budget, the released form has two logistic halves with a jump at
+/// half the budget. The form of the paper (`required_quality = "blended"`) blends both sigmoids.
 #[inline]
 pub fn required_quality(price: f64, curve: &Curve, params: &Params) -> f64 {
     let form = &params.participation;
@@ -83,7 +83,7 @@ pub(crate) mod tests {
         let params = Params::shipped();
         for &(price, quality) in expected {
             let required = required_quality(price, curve, &params);
-            assert!((required - quality).abs() < tolerance, "at {price}: {required} instead of {quality}");
+            assert!((required - quality).abs() < tolerance, "at {price}: got {required}, expected {quality}");
         }
     }
 

@@ -1,4 +1,5 @@
-//! Preference drift: expectations and budgets move, for groups and for each subscriber (docs/mechanics/market/drift.md).
+//! Preference drift: changes of expectations and budgets, for groups and for each subscriber
+//! (docs/mechanics/market/drift.md).
 
 use crate::canonical::canonical;
 use crate::customers::Customers;
@@ -7,10 +8,10 @@ use crate::fault::Fault;
 use crate::identifiers::{ByGroup, Group};
 use crate::params::{Drift, IndividualDrift, Params};
 
-/// How much expectations and budgets have moved since day 0.
+/// Accumulated change of expectations and budgets since day 0.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DriftTotals {
-    /// Quality added to everyone's expectations.
+    /// Quality added to the expectations of all groups.
     pub global_quality: f64,
     /// Quality added to a group's expectations.
     pub quality: ByGroup<f64>,
@@ -23,7 +24,7 @@ canonical! {
     Expectation { quality, c_max }
 }
 
-/// What is added to a customer's curve when it is read.
+/// The change that is added to a customer's curve when it is read.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Expectation {
     /// Added to both quality bounds.
@@ -33,42 +34,42 @@ pub struct Expectation {
 }
 
 impl DriftTotals {
-    /// What is added to the curves of a group's customers.
+    /// Returns the change of the curves of a group's customers.
     pub fn expectation(&self, group: Group) -> Expectation {
         Expectation { quality: self.global_quality + self.quality[group], c_max: self.c_max[group] }
     }
 }
 
-/// Growth of a daily rate over an application of drift: (1 + r)^30 - 1.
+/// Returns the growth of a daily rate over one application of drift: (1 + r)^30 - 1.
 pub fn compounded(rate: f64, law: &Drift) -> f64 {
     libm::pow(1.0 + rate, f64::from(law.days_per_application)) - 1.0
 }
 
-/// Whether drift is applied on a day: every 30 days once the grace period is over.
+/// Returns whether drift is applied on a day: every 30 days after the grace period.
 pub fn is_drift_day(day: u32, law: &Drift) -> bool {
     day.is_multiple_of(law.interval_days) && day > law.drift_grace_period_days
 }
 
-/// The next day on which drift is applied.
+/// Returns the next day on which drift is applied.
 pub fn next_drift_day(after: u32, law: &Drift) -> u32 {
     let next = |day: u32| (day / law.interval_days + 1) * law.interval_days;
     next(after.max(law.drift_grace_period_days))
 }
 
-/// What one application adds to everyone's expectations.
+/// Returns the change of all groups' expectations by one application.
 pub fn step_of_everyone(law: &Drift) -> f64 {
     f64::from(law.days_per_application) * law.global_q_bias_drift
 }
 
-/// What one application adds to the expectations and budgets of a group.
+/// Returns the change of a group's expectations and budgets by one application.
 pub fn step_of_group(group: Group, params: &Params) -> Expectation {
     let (own, days) =
         (&params.group(group).group_drift_per_day, f64::from(params.drift.days_per_application));
     Expectation { quality: days * own.q_bias_drift, c_max: days * own.c_max_drift }
 }
 
-/// Moves the group totals and every active subscriber's own curve and seats. `seat_multiplier` is the macro
-/// multiplier of seats as it was yesterday. Returns whether anything moved.
+/// Changes the group totals and each active subscriber's curve and seats. `seat_multiplier` is yesterday's
+/// macro multiplier of seats. Returns whether drift was applied.
 pub fn apply(
     day: u32,
     totals: &mut DriftTotals,
@@ -136,7 +137,7 @@ mod tests {
     use crate::test_kit::subscriber;
 
     fn near(actual: f64, expected: f64) {
-        assert!((actual - expected).abs() < 6e-9, "{actual} instead of {expected}");
+        assert!((actual - expected).abs() < 6e-9, "got {actual}, expected {expected}");
     }
 
     fn drifted(id: &str, row: Subscriber, day: u32, pmi: f64) -> (Subscriber, DriftTotals) {

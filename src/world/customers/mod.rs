@@ -1,4 +1,4 @@
-//! Who the customers are: how they arise, what they want, and the columns of those who are active.
+//! Customers: their traits, their decisions, and the columns of active subscribers.
 
 pub mod choice;
 pub mod columns;
@@ -15,27 +15,27 @@ use super::identifiers::{ByGroup, Group};
 use columns::{BLOCK, Block, Subscriber};
 use numbers::{ArrivalRun, CustomerNumbers};
 
-/// The first real customer; number 1 is the market observer, who only owns posts that no customer wrote.
+/// The first real customer. Number 1 is the market observer, the author of posts that no customer wrote.
 pub const FIRST_CUSTOMER: u32 = 2;
 
-/// How the work on blocks is shared out to threads. Waking one takes as long as some thousand customers.
+/// How blocks are distributed among threads. Waking a thread costs as much as processing some thousand customers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Shares {
-    /// A few blocks at a time: those who came on one day decide and pay on one day, so the work of a day is in a few
-    /// neighbouring blocks.
+    /// A few blocks per task: customers who arrived on the same day are billed on the same day, so the work
+    /// of a day is concentrated in a few adjacent blocks.
     Small,
-    /// Many blocks at a time, for what takes next to nothing for everybody.
+    /// Many blocks per task, for work that is cheap for every customer.
     Large,
 }
 
-/// Fewer blocks than this are not worth waking a second thread.
+/// Fewer blocks than this are processed on one thread.
 const PARALLEL_FROM: usize = 8;
-/// Blocks of a small share at most.
+/// Maximum blocks of a small task.
 const SMALL: usize = 2;
-/// Blocks of a large share at least.
+/// Minimum blocks of a large task.
 const LARGE: usize = 24;
 
-/// All customers of a run: the active ones as columns, of the others only where their numbers are.
+/// All customers of a run: active ones as columns; of the others, only their numbers.
 #[derive(Debug, Clone)]
 pub struct Customers {
     /// By group.
@@ -44,16 +44,16 @@ pub struct Customers {
     pub next_customer: u32,
     /// Number of the next subscription.
     pub next_subscription: u32,
-    /// Which numbers came when.
+    /// Customer numbers by day of arrival.
     pub numbers: CustomerNumbers,
 }
 
 /// Customers of one group.
 #[derive(Debug, Clone, Default)]
 pub struct GroupCustomers {
-    /// How many were ever generated.
+    /// Number of customers ever generated.
     pub created: u32,
-    /// Block k holds the active ones of running numbers k * BLOCK + 1 ..= (k + 1) * BLOCK.
+    /// Block k holds the active customers with running numbers k * BLOCK + 1 ..= (k + 1) * BLOCK.
     pub blocks: Vec<Block>,
 }
 
@@ -74,12 +74,12 @@ impl Default for Customers {
 }
 
 impl GroupCustomers {
-    /// Number of active subscriptions.
+    /// Returns the number of active subscriptions.
     pub fn active(&self) -> u32 {
         self.blocks.iter().map(|block| block.len() as u32).sum()
     }
 
-    /// The block of a running number, made if it is not there yet.
+    /// Returns the block of a running number and creates it if necessary.
     fn block_of(&mut self, n: u32) -> &mut Block {
         let block = block_number(n);
         if self.blocks.len() <= block {
@@ -87,13 +87,14 @@ impl GroupCustomers {
         }
         let block = &mut self.blocks[block];
         if block.n.capacity() == 0 {
-            // Most blocks fill up within days: 27 columns that grow by and by cost more than room nobody takes.
+            // Most blocks fill up within days, so allocating full capacity is cheaper than growing 27 columns
+            // repeatedly.
             *block = Block::with_room(BLOCK as usize);
         }
         block
     }
 
-    /// Adds active subscribers with ascending running numbers, larger than all there are.
+    /// Appends active subscribers with ascending running numbers, larger than all existing ones.
     pub fn enrol(&mut self, rows: &[Subscriber]) {
         for rows in rows.chunk_by(|one, next| block_number(one.n) == block_number(next.n)) {
             let block = self.block_of(rows[0].n);
@@ -102,7 +103,7 @@ impl GroupCustomers {
         }
     }
 
-    /// Adds an active subscriber at the place of its running number.
+    /// Inserts an active subscriber at the position of its running number.
     pub fn activate(&mut self, row: Subscriber) {
         let block = self.block_of(row.n);
         match block.n.binary_search(&row.n) {
@@ -112,19 +113,19 @@ impl GroupCustomers {
         }
     }
 
-    /// Block and position of the active subscriber with this running number.
+    /// Returns the block and position of the active subscriber with this running number.
     pub fn place(&self, n: u32) -> Option<(usize, usize)> {
         let block = block_number(n);
         let at = self.blocks.get(block)?.position(n)?;
         Some((block, at))
     }
 
-    /// The active subscriber with this running number.
+    /// Returns the active subscriber with this running number.
     pub fn row(&self, n: u32) -> Option<Subscriber> {
         self.place(n).map(|(block, at)| self.blocks[block].row(at))
     }
 
-    /// Takes an active subscriber out.
+    /// Removes an active subscriber and returns it.
     pub fn deactivate(&mut self, n: u32) -> Option<Subscriber> {
         let (block, at) = self.place(n)?;
         let row = self.blocks[block].row(at);
@@ -134,12 +135,12 @@ impl GroupCustomers {
 }
 
 impl Customers {
-    /// Active subscriptions by group; an enterprise account counts once.
+    /// Returns active subscriptions by group; an enterprise account counts once.
     pub fn active(&self) -> ByGroup<u32> {
         ByGroup::from_fn(|group| self.groups[group].active())
     }
 
-    /// Records that consecutive customers came, and returns the number of the first.
+    /// Records the arrival of `count` customers with consecutive numbers.
     pub fn arrive(&mut self, day: u32, group: Group, count: u32) -> ArrivalRun {
         let own = &mut self.groups[group];
         let run =
@@ -150,36 +151,34 @@ impl Customers {
         run
     }
 
-    /// Group and running number of a customer, if that number was ever given to one.
+    /// Returns group and running number of a customer, or `None` if the number was never assigned.
     pub fn find(&self, customer: u32) -> Option<(Group, u32)> {
         self.numbers.find(customer)
     }
 
-    /// Works through all blocks that hold anybody, on several threads when there are many; the results stand
-    /// in group and block order whatever the number of threads.
+    /// Processes all non-empty blocks, on several threads if there are many. Results are in group and block
+    /// order regardless of the number of threads.
     pub fn sweep<R: Send>(&mut self, work: impl Fn(Group, u32, &mut Block) -> R + Sync) -> Vec<R> {
         shared_out(self.jobs(), Shares::Small, |(group, at, block)| work(group, at, block))
     }
 
-    /// Works through all blocks that hold anybody like [`Customers::sweep`], with what an earlier sweep found out
-    /// about each of them.
+    /// Processes all non-empty blocks like [`Customers::sweep`], each with the matching result of an earlier sweep.
     pub fn sweep_with<T: Send, R: Send>(
         &mut self,
         found: Vec<T>,
         work: impl Fn(Group, u32, &mut Block, T) -> R + Sync,
     ) -> Vec<R> {
         let jobs = self.jobs();
-        debug_assert_eq!(jobs.len(), found.len(), "nobody may have come or left in between");
+        debug_assert_eq!(jobs.len(), found.len(), "no customer may arrive or leave between the sweeps");
         let jobs = jobs.into_iter().zip(found).collect();
         shared_out(jobs, Shares::Small, |((group, at, block), own)| work(group, at, block, own))
     }
 
-    /// Works through all blocks that hold anybody like [`Customers::sweep`], where the work takes next to nothing.
+    /// Processes all non-empty blocks like [`Customers::sweep`], for work that is cheap per block.
     pub fn skim<R: Send>(&mut self, work: impl Fn(Group, &mut Block) -> R + Sync) -> Vec<R> {
         shared_out(self.jobs(), Shares::Large, |(group, _, block)| work(group, block))
     }
 
-    /// Blocks that hold anybody, with their group and number.
     fn jobs(&mut self) -> Vec<(Group, u32, &mut Block)> {
         let mut jobs = Vec::new();
         for (group, own) in Group::all().zip(&mut self.groups.0) {
@@ -191,13 +190,12 @@ impl Customers {
         jobs
     }
 
-    /// Looks at all blocks that hold anybody, on several threads when there are very many; the results stand in
-    /// group and block order.
+    /// Reads all non-empty blocks, on several threads if there are many. Results are in group and block order.
     pub fn survey<R: Send>(&self, look: impl Fn(Group, &Block) -> R + Sync) -> Vec<R> {
         shared_out(self.blocks().collect(), Shares::Large, |(group, block)| look(group, block))
     }
 
-    /// Hash of their canonical bytes, made on several threads: they are nearly all of the state.
+    /// Returns the hash of the canonical bytes, computed on several threads because customers are most of the state.
     pub fn hash(&self) -> blake3::Hash {
         let Customers { groups, next_customer, next_subscription, numbers } = self;
         let mut stretches = Vec::new();
@@ -217,7 +215,7 @@ impl Customers {
         hash_of_stretches(&stretches)
     }
 
-    /// All blocks that hold anybody, in group and block order.
+    /// Returns all non-empty blocks in group and block order.
     pub fn blocks(&self) -> impl Iterator<Item = (Group, &Block)> {
         self.groups
             .pairs()
@@ -226,7 +224,7 @@ impl Customers {
     }
 }
 
-/// Does jobs that take a block each, on several threads when there are many; the results stand in their order.
+/// Runs one job per block, on several threads if there are many. Results keep the order of the jobs.
 fn shared_out<J: Send, R: Send>(jobs: Vec<J>, shares: Shares, work: impl Fn(J) -> R + Sync) -> Vec<R> {
     match shares {
         _ if jobs.len() < PARALLEL_FROM => jobs.into_iter().map(work).collect(),
@@ -235,7 +233,6 @@ fn shared_out<J: Send, R: Send>(jobs: Vec<J>, shares: Shares, work: impl Fn(J) -
     }
 }
 
-/// Number of the block that holds a running number.
 fn block_number(n: u32) -> usize {
     ((n - 1) / BLOCK) as usize
 }

@@ -1,29 +1,30 @@
-//! Which customer has which number.
+//! Mapping between customer numbers and groups.
 //!
-//! Customers are numbered as they come, over all groups; what chance gives one is keyed by its group and its running number
-//! there. So two companies under the same luck have the same customers under other numbers, once more or fewer came.
+//! Customers are numbered in order of arrival over all groups. Random draws are keyed by group and running
+//! number within the group. Two companies with the same seed therefore have the same customers under
+//! different numbers once their numbers of leads differ.
 
 use crate::canonical::canonical;
 use crate::identifiers::Group;
 
-/// The numbers that were given, in the order of the days.
+/// The assigned numbers in order of the days.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct CustomerNumbers {
     given: Vec<ArrivalRun>,
 }
 
-/// Customers of one group that came on one day: consecutive numbers.
+/// Customers of one group that arrived on one day, with consecutive numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ArrivalRun {
     /// Day of arrival.
     pub day: u32,
     /// Their group.
     pub group: Group,
-    /// Customer number of the first.
+    /// Customer number of the first one.
     pub first_customer: u32,
-    /// Running number of the first within the group.
+    /// Running number of the first one within the group.
     pub first_n: u32,
-    /// How many.
+    /// Number of customers.
     pub count: u32,
 }
 
@@ -33,12 +34,12 @@ canonical! {
 }
 
 impl ArrivalRun {
-    /// Running numbers within the group, with customer numbers.
+    /// Returns the running numbers within the group, with customer numbers.
     pub fn numbers(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
         (self.first_n..self.first_n + self.count).zip(self.first_customer..)
     }
 
-    /// The same run in pieces of so many.
+    /// Splits the run into parts of at most `most` customers.
     pub fn pieces(self, most: u32) -> impl Iterator<Item = ArrivalRun> {
         (0..self.count).step_by(most as usize).map(move |from| ArrivalRun {
             first_customer: self.first_customer + from,
@@ -50,25 +51,25 @@ impl ArrivalRun {
 }
 
 impl CustomerNumbers {
-    /// Takes down that consecutive customers came.
+    /// Appends a run of consecutive customers.
     pub(super) fn give(&mut self, run: ArrivalRun) {
         if run.count > 0 {
             self.given.push(run);
         }
     }
 
-    /// Group and running number of a customer, if that number was ever given to one.
+    /// Returns group and running number of a customer, or `None` if the number was never assigned.
     pub fn find(&self, customer: u32) -> Option<(Group, u32)> {
         let (run, offset) = self.place(customer)?;
         Some((run.group, run.first_n + offset))
     }
 
-    /// Day on which a customer came, if that number was ever given to one.
+    /// Returns the day on which a customer arrived, or `None` if the number was never assigned.
     pub fn arrival_day(&self, customer: u32) -> Option<u32> {
         self.place(customer).map(|(run, _)| run.day)
     }
 
-    /// Number of the customer with a running number in a group, if it has come.
+    /// Returns the number of the customer with running number `n` in a group, or `None` if it has not arrived.
     pub fn of(&self, group: Group, n: u32) -> Option<u32> {
         let holds = |run: &&ArrivalRun| run.group == group && run.first_n <= n && n - run.first_n < run.count;
         let run = self.given.iter().rev().find(holds)?;

@@ -1,4 +1,4 @@
-//! Picks of a customer's profile: codes only; words are made when a row is written
+//! Profile attributes of a customer as list positions. The text is created when a row is written
 //! (docs/mechanics/customers/personas.md).
 
 use crate::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore};
@@ -6,10 +6,10 @@ use crate::identifiers::Group;
 use crate::params::Params;
 use crate::random::Stream;
 
-/// Positions in the word lists of the group's profile, in the order of the draws.
+/// Positions in the word lists of the group's profile, in draw order.
 ///
-/// Individuals: industry, role, experience, work style, technical skill, none, none.
-/// Companies: industry, role, technical skill, company size, culture, decision style, primary concern.
+/// Individuals: industry, role, experience, work style, technical skill, unused, unused.
+/// Enterprises: industry, role, technical skill, company size, culture, decision style, primary concern.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct PersonaPicks(pub [u8; 7]);
 
@@ -26,7 +26,7 @@ impl Restore for PersonaPicks {
 }
 
 impl PersonaPicks {
-    /// Draws one pick per axis.
+    /// Draws one position per axis.
     pub fn draw(group: Group, params: &Params, stream: &mut Stream) -> PersonaPicks {
         let own = &params.personas.group[group.index()];
         let axes = if group.is_enterprise() {

@@ -1,8 +1,8 @@
-//! What a new customer is like: draws from the stream of (group, n), docs/mechanics/customers/generation.md.
+//! Traits of a new customer, drawn from the stream of (group, n); see docs/mechanics/customers/generation.md.
 //!
-//! The n-th customer of a group has the same traits whatever else happened; only accumulated drift is added
-//! afterwards. The position of every draw in the stream is fixed. Attributes that act nowhere (patience,
-//! negotiation rate, lock-in penalty while contracts last a month) are not drawn at all.
+//! The n-th customer of a group has the same traits in every run with the same seed; only accumulated drift
+//! is added afterwards. The position of every draw in the stream is fixed. Attributes without effect
+//! (patience, negotiation rate, and the lock-in penalty while contracts last a month) are not drawn.
 
 use super::curve::Curve;
 use super::persona::PersonaPicks;
@@ -13,42 +13,42 @@ use crate::random::{Part, Stream, Streams};
 /// Traits as drawn, before any drift.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Traits {
-    /// Willingness curve.
+    /// Participation curve.
     pub curve: Curve,
     /// Mean demand, units a day (and seat).
     pub usage_demand: f64,
-    /// Quality lost to ads of full strength.
+    /// Quality lost to ads at full strength.
     pub ads_quality_sensitivity: f64,
-    /// Revenue of ads of full strength, dollars a day and seat.
+    /// Revenue from ads at full strength, dollars a day and seat.
     pub ads_return_sensitivity: f64,
     /// Seats; 1 for individuals.
     pub seats: f64,
-    /// How a company negotiates; nothing for individuals.
+    /// Negotiation traits of an enterprise; `None` for individuals.
     pub negotiator: Option<Negotiator>,
-    /// Picks of the profile.
+    /// Profile attributes.
     pub persona: PersonaPicks,
 }
 
-/// How a company negotiates (docs/mechanics/enterprise/company.md).
+/// Negotiation traits of an enterprise (docs/mechanics/enterprise/company.md).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Negotiator {
     /// Mean reply delay, in days.
     pub reply_delay_mean: f64,
-    /// Its spread.
+    /// Standard deviation of the reply delay, in days.
     pub reply_delay_std: f64,
-    /// First bid as a share of the most it would pay, 0.5..=0.95.
+    /// First bid as a share of the highest acceptable price, 0.5..=0.95.
     pub initial_offer_factor: f64,
-    /// Turns it takes part in, at least 2.
+    /// Maximum number of turns, at least 2.
     pub max_negotiation_turns: u32,
 }
 
-/// Traits of the n-th customer of a group; `deal_velocity` is today's macro multiplier of that name.
+/// Draws the traits of the n-th customer of a group. `deal_velocity` is today's macro multiplier of that name.
 pub fn draw_traits(group: Group, n: u32, deal_velocity: f64, params: &Params, streams: &Streams) -> Traits {
     let stream = streams.open(Part::Traits, [group.index() as u64, u64::from(n)]);
     traits_from(stream, group, deal_velocity, params)
 }
 
-/// Traits of the customer of a group whose stream this is.
+/// Draws traits from the stream of a customer.
 pub fn traits_from(mut stream: Stream, group: Group, deal_velocity: f64, params: &Params) -> Traits {
     let (own, bounds) = (params.group(group), &params.customer_generation);
     let steepness = |exponential: f64, offset: f64, low, high| (exponential + offset).clamp(low, high);
@@ -102,7 +102,7 @@ fn draw_company(
     stream: &mut Stream,
 ) -> (f64, Negotiator) {
     let (bounds, sales) = (&params.customer_generation, &params.enterprise);
-    let expected = "enterprise groups are complete: checked on load";
+    let expected = "enterprise groups are complete, checked by Params::load";
     let (fewest, most) = (own.seat_count_min.expect(expected), own.seat_count_max.expect(expected));
     let (delay_mean, delay_std) =
         (own.reply_delay_mean.expect(expected), own.reply_delay_std.expect(expected));
@@ -140,7 +140,7 @@ mod tests {
         let own_std =
             (values.map(|value| (value - own_mean) * (value - own_mean)).sum::<f64>() / count).sqrt();
         assert!((own_mean - mean).abs() < 4.0 * std / count.sqrt() + 0.002 * mean, "{name}: mean {own_mean}");
-        assert!((own_std / std - 1.0).abs() < 0.02, "{name}: spread {own_std}");
+        assert!((own_std / std - 1.0).abs() < 0.02, "{name}: standard deviation {own_std}");
     }
 
     fn share(values: &[Traits], holds: impl Fn(&Traits) -> bool) -> f64 {

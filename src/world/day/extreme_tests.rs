@@ -1,4 +1,4 @@
-//! Every parameter at the ends of what is allowed: a day is simulated, or there is no room for it.
+//! Tests every parameter at the limits of its range: a day can be simulated, or a size limit is reported.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -10,10 +10,9 @@ use super::wiring_tests::busy_settings;
 use super::*;
 use crate::params::keys;
 
-/// Values that are tried; those out of range are refused.
+/// Values to test. Values out of range are rejected.
 const TRIED: [f64; 5] = [0.0, -1.0, 1_000.0, 4e9, 1e300];
 
-/// A company with customers, companies and threads.
 fn company(params: &Params, streams: &Streams) -> World {
     let mut facts = Facts::default();
     let mut world = World::open(500, 1e8, params, &mut facts);
@@ -24,7 +23,7 @@ fn company(params: &Params, streams: &Streams) -> World {
     world
 }
 
-/// Whether another key of its kind is tried: those of the other groups, tiers and levels.
+/// Whether a similar key is tested instead: those of other groups, tiers and levels.
 fn is_one_of_many_alike(key: &str) -> bool {
     let of_group = |part: &str| Group::parse(part).is_some_and(|group| !["S1", "E1"].contains(&group.id()));
     let of_step = |part: &str| part.parse::<u32>().is_ok_and(|number| number > 1);

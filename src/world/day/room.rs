@@ -1,4 +1,4 @@
-//! Whether the next day has room for those who come: parameters and budgets can ask for more people than a machine holds.
+//! Size limits for the next day. Parameters and budgets can produce more customers than a machine can hold.
 
 use crate::events::Facts;
 use crate::identifiers::Group;
@@ -8,25 +8,25 @@ use crate::params::Params;
 use crate::random::Streams;
 use crate::state::World;
 
-/// Leads that a day holds at most, as they are expected: most of all markets of the release at once.
+/// Maximum expected leads per day.
 pub const MOST_LEADS_A_DAY: u32 = 1_000_000;
-/// Subscribers and companies that a world holds at most, those of the next day included.
+/// Maximum individual and enterprise subscribers, including those of the next day.
 pub const MOST_CUSTOMERS: u32 = 5_000_000;
-/// Numbers that are given to leads, the lost ones included.
+/// Maximum customer numbers, including those of lost leads.
 const MOST_NUMBERS: u32 = u32::MAX / 2;
 
-/// What a day has no room for.
+/// A limit that the next day would exceed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoRoom {
-    /// More than [`MOST_LEADS_A_DAY`] are expected, or their number is none.
+    /// More than [`MOST_LEADS_A_DAY`] leads are expected, or their number is not a number.
     Leads,
-    /// With its leads there could be more than [`MOST_CUSTOMERS`].
+    /// Subscribers and leads together could exceed [`MOST_CUSTOMERS`].
     Customers,
-    /// There are no numbers left for leads.
+    /// The remaining customer numbers do not suffice for the leads.
     Numbers,
 }
 
-/// What the day after the present one has no room for; none if it can be simulated.
+/// Returns the limit that the next day would exceed, or `None` if it can be simulated.
 pub fn room_for_next_day(world: &World, params: &Params, streams: &Streams) -> Option<NoRoom> {
     let leads = expected_leads(world, params, streams);
     let customers = world.customers.active().iter().map(|count| f64::from(*count)).sum::<f64>();
@@ -41,7 +41,8 @@ pub fn room_for_next_day(world: &World, params: &Params, streams: &Streams) -> O
     }
 }
 
-/// Leads of the next day as they will be expected, if nobody cancels and no post or reputation moves until they come.
+/// Returns the expected leads of the next day, assuming no cancellations, posts or reputation changes before
+/// they arrive.
 fn expected_leads(world: &World, params: &Params, streams: &Streams) -> f64 {
     let day = world.day + 1;
     let mut market = world.market.clone();

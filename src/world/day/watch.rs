@@ -1,4 +1,4 @@
-//! Seeing a day from within: what it sees it cannot change, so a day that is watched ends as one that is not.
+//! Observation of a day during its simulation. Observers cannot change it, so an observed day has the same result.
 
 use crate::context::DayContext;
 use crate::customers::Customers;
@@ -15,18 +15,18 @@ use crate::reputation::{Mood, ReputationWrite};
 use crate::retention::renewal::RenewalContext;
 use crate::state::World;
 
-/// Looks into a day while it is simulated. Blocks are shown on any thread, in any order.
+/// An observer of the simulation of a day. Blocks are passed on any thread and in any order.
 pub trait DayWatch: Send + Sync {
-    /// The morning has come: the world as it finds it, and what is frozen of it for the day.
+    /// Called at the start of the day with the world and the values fixed for the day.
     fn morning_came(&self, _world: &World, _morning: &Morning, _params: &Params) {}
 
-    /// The satisfaction of a block is about to move.
+    /// Called before the satisfaction of a block is updated.
     fn before_moods(&self, _group: Group, _block: &Block, _day: &DayContext<'_>) {}
 
-    /// The subscribers of a block are about to decide: issues are settled, satisfaction has moved, nobody has left yet.
+    /// Called before the subscribers of a block decide: issues are settled and satisfaction is updated.
     fn before_decisions(&self, _group: Group, _block: &Block, _judgement: &RenewalContext<'_>) {}
 
-    /// Companies are about to be lost, to answer, and to begin threads by themselves.
+    /// Called before enterprises are lost, reply, or open threads.
     fn before_negotiations(
         &self,
         _enterprise: &Enterprise,
@@ -35,10 +35,10 @@ pub trait DayWatch: Send + Sync {
     ) {
     }
 
-    /// Reputations have moved for the last time today, by what subscribers contributed.
+    /// Called after the last change of reputations today, by the subscribers' contributions.
     fn reputation_settled(&self, _moods: &ByGroup<Mood>, _market: &Market, _params: &Params) {}
 
-    /// The leads of the day are about to come: the market, the active subscriptions, the factors of each group.
+    /// Called before leads arrive, with the market, the active subscriptions and the factors of each group.
     fn leads_expected(
         &self,
         _arrivals: &Arrivals<'_>,
@@ -47,21 +47,21 @@ pub trait DayWatch: Send + Sync {
     ) {
     }
 
-    /// A call of the player was applied between two days, with the facts it left.
+    /// Called after a tool call between two days, with the facts that it recorded.
     fn called(&self, _facts: &Facts) {}
 
-    /// A mechanism has moved a reputation: individuals of a block who left, a company that was lost, the mood of a
-    /// group, what spills over from another.
+    /// Called after a mechanism changed a reputation: cancellations of a block, a lost enterprise, a group's
+    /// own contributions, or spillover.
     fn reputation_moved(&self, _write: &ReputationWrite<'_>) {}
 
-    /// The figures of the day, before it is over.
+    /// Called with the figures of the day before it ends.
     fn day_counted(&self, _figures: &DayFigures) {}
 
-    /// The day is over: the world and the facts as they stay.
+    /// Called at the end of the day with the final world and facts.
     fn day_over(&self, _world: &World, _params: &Params, _facts: &Facts) {}
 }
 
-/// Nobody looks.
+/// An observer that does nothing.
 #[derive(Debug, Clone, Copy)]
 pub struct Unwatched;
 

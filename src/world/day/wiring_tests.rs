@@ -1,5 +1,5 @@
-//! What a day hands from one step to the next: the outage to the hotline, the moods, the decisions and the public; the
-//! economy to leads, budgets and seats; the calendar to leads and usage; and every figure to its own field.
+//! Tests what one step of a day passes to the next: outages to issues, satisfaction, decisions and reputation; the
+//! economy to leads, budgets and seats; the calendar to leads and usage; and each figure to its field.
 
 use super::*;
 use crate::customers::columns::Subscriber;
@@ -10,7 +10,7 @@ use crate::params::{MacroBeta, ServicePenalty};
 use crate::quota::Quota;
 use crate::test_kit::subscriber;
 
-/// Lopsided settings under which several groups come, stay, complain and leave.
+/// Uneven settings with which customers of several groups arrive, stay, open issues and leave.
 pub(super) fn busy_settings(world: &mut World) {
     let core = &mut world.settings.core;
     core.prices = ByPlan([9.0, 16.0, 31.0]);
@@ -28,7 +28,6 @@ pub(super) fn busy_settings(world: &mut World) {
     world.settings.targeted_development.targeted_spend = spend(&[("S1", 3000.0), ("E1", 1500.0)]);
 }
 
-/// A world under given parameters.
 struct Play {
     world: World,
     params: Params,
@@ -48,7 +47,7 @@ impl Play {
         step_day(&mut self.world, &self.params, &self.streams, &mut self.facts)
     }
 
-    /// The day after `days`, under parameters that are changed for that day alone.
+    /// Simulates `days` days, then one more with parameters changed for that day only.
     fn day_after(
         days: u32,
         params: &Params,
@@ -73,7 +72,7 @@ fn mean(rows: &[Subscriber], value: impl Fn(&Subscriber) -> f64) -> f64 {
     rows.iter().map(value).sum::<f64>() / rows.len() as f64
 }
 
-/// An outage today, certainly or certainly not.
+/// Sets the outage probability to 1 or 0.
 fn outage(params: &mut Params, certain: bool) {
     let chance = if certain { 1.0 } else { 0.0 };
     params.operations.base_outage_prob = chance;
@@ -86,15 +85,15 @@ fn an_outage_reaches_the_hotline_the_moods_and_the_public() {
     let of = |certain| Play::day_after(40, &params, |params| outage(params, certain));
     let ((quiet, calm, _), (broken, down, _)) = (of(false), of(true));
     assert!(!calm.outage && calm.downtime_minutes == 0 && down.outage && down.downtime_minutes > 0);
-    assert_eq!(calm.total_usage, down.total_usage, "all else is equal");
+    assert_eq!(calm.total_usage, down.total_usage, "all other conditions are equal");
 
-    // Whoever calls anyway calls then too, and many more do.
+    // Customers who open an issue anyway also do so during an outage, and many more do.
     let callers =
         |play: &Play| -> Vec<u32> { play.facts.issues_opened.iter().map(|issue| issue.customer).collect() };
     let (few, many) = (callers(&quiet), callers(&broken));
     assert!(few.iter().all(|customer| many.contains(customer)) && many.len() > 2 * few.len());
 
-    // Whoever was there is less content; nobody gains by it.
+    // Existing subscribers are less satisfied; none gains.
     let there = |play: &Play| -> Vec<Subscriber> {
         play.rows().into_iter().filter(|row| row.start_day < 41).collect()
     };
@@ -103,14 +102,14 @@ fn an_outage_reaches_the_hotline_the_moods_and_the_public() {
     let pairs = || before.iter().zip(&after);
     assert!(pairs().all(|(calm, down)| down.satisfaction <= calm.satisfaction));
     let fell = pairs().filter(|(calm, down)| down.satisfaction < calm.satisfaction).count();
-    assert!(fell * 10 > before.len() * 9, "{fell} of {} are less content", before.len());
+    assert!(fell * 10 > before.len() * 9, "{fell} of {} are less satisfied", before.len());
 
-    // Help on a day without service pleases nobody.
+    // A resolution on a day with an outage does not raise the relationship.
     let solved = quiet.facts.issues_resolved.clone();
     assert!(!solved.is_empty() && solved == broken.facts.issues_resolved);
     assert!(mean(&before, |row| row.relationship) > mean(&after, |row| row.relationship));
 
-    // The public remembers.
+    // The chronicle records the outage.
     let remembered = |play: &Play| play.world.market.social.chronicle.today().outage;
     assert!(!remembered(&quiet) && remembered(&broken));
     let s1 = Group::at(0).expect("S1");
@@ -123,7 +122,7 @@ fn an_outage_drives_people_off_only_where_decisions_feel_it() {
     let left = |penalty, certain| -> u32 {
         let mut params = Params::shipped();
         params.fidelity.service_penalty = penalty;
-        // A penalty that nobody overlooks.
+        // A penalty large enough to affect decisions.
         params.quality.service_outage_weight = 0.5;
         let (play, figures, _) = Play::day_after(44, &params, |params| outage(params, certain));
         let ended = play.facts.endings.iter().filter(|ending| !ending.group.is_enterprise());
@@ -140,7 +139,7 @@ fn overload_drives_people_off_on_its_day() {
     let left = |capacity_units: u32| {
         let mut params = Params::shipped();
         params.fidelity.service_penalty = ServicePenalty::Everywhere;
-        // A penalty that nobody overlooks.
+        // A penalty large enough to affect decisions.
         params.quality.service_overload_weight = 0.5;
         let (_, figures, _) = Play::day_after(44, &params, |params| {
             outage(params, false);
@@ -170,7 +169,7 @@ fn every_day_has_its_own_calendar() {
         let expected = calendar.weekly[day % 7] * calendar.monthly[day % 30];
         assert_eq!(trace.leads[s1].calendar, expected, "leads of day {day}");
     }
-    // Usage follows the week and not the month.
+    // Usage depends on the weekday but not on the day of the month.
     let day_65 = |monthly: f64, weekly: f64| {
         let change = |params: &mut Params| {
             params.calendar.monthly[65 % 30] *= monthly;
@@ -183,7 +182,7 @@ fn every_day_has_its_own_calendar() {
     assert!((0.49..0.6).contains(&half), "some are limited by their quota: {half}");
 }
 
-/// Nobody reacts to the economy, which stands at half of neutral, but for these.
+/// Parameters with the economy at half its neutral index and no reactions except those that `change` sets.
 fn reacting(change: impl Fn(&mut MacroBeta)) -> Params {
     let mut params = Params::shipped();
     let law = &mut params.economy;
@@ -202,7 +201,7 @@ fn reacting(change: impl Fn(&mut MacroBeta)) -> Params {
     params
 }
 
-/// A subscriber of 500 seats whom nobody negotiates with.
+/// Adds a subscriber with 500 seats that has no thread.
 fn seat_500_people(world: &mut World) -> Group {
     let group = Group::parse("E1").expect("a group");
     let customer = world.customers.next_customer;
@@ -213,19 +212,19 @@ fn seat_500_people(world: &mut World) -> Group {
     group
 }
 
-/// What the economy acts on: the factor of leads, how many gave up for lack of a plan worth its price, seats.
+/// Returns the lead factor of the economy, the number of cancellations for price or quality, and the seats.
 fn effects(params: Params) -> (f64, usize, f64) {
     let mut play = Play::new(params);
     let group = seat_500_people(&mut play.world);
     let (mut factor, mut gave_up) = (0.0, 0);
-    // Seats drift on day 90, with the economy of the day before.
+    // Seats drift on day 90, using the economy of the day before.
     for _ in 0..90 {
         factor = play.day().1.leads[Group::at(0).expect("S1")].economy;
         let price = |ending: &&SubscriptionEnded| matches!(ending.cause, EndCause::Price | EndCause::Quality);
         gave_up += play.facts.endings.iter().filter(price).count();
     }
     let row = play.world.customers.groups[group].row(1);
-    (factor, gave_up, row.expect("nobody ended it").seats)
+    (factor, gave_up, row.expect("the subscription is active").seats)
 }
 
 #[test]
@@ -248,7 +247,7 @@ fn every_figure_of_a_day_stands_in_its_own_field() {
     let mut sums = DayFigures::default();
     for day in 1..=95 {
         if day == 50 {
-            // Some find another plan better now.
+            // Some subscribers now prefer another plan.
             play.world.settings.core.prices = ByPlan([15.0, 13.0, 22.0]);
         }
         if day == 70 {
@@ -277,7 +276,7 @@ fn every_figure_of_a_day_stands_in_its_own_field() {
         let costs: f64 = facts.ledger.iter().map(|entry| entry.amount).filter(|amount| *amount < 0.0).sum();
         assert!((figures.total_costs + costs).abs() < 1e-6);
         let leads = play.params.leads.lead_acquisition_cost * f64::from(figures.new_leads);
-        assert!((figures.cash - (cash + paid + costs - leads)).abs() < 1e-6, "nothing else moves cash");
+        assert!((figures.cash - (cash + paid + costs - leads)).abs() < 1e-6, "nothing else changes cash");
         let people = play.rows();
         assert_eq!(figures.individual_subscribers as usize, people.len());
         sums.new_enterprise_leads += figures.new_enterprise_leads;
@@ -286,5 +285,5 @@ fn every_figure_of_a_day_stands_in_its_own_field() {
             (sums.upgrades + figures.upgrades, sums.downgrades + figures.downgrades);
     }
     let told = [sums.new_enterprise_leads, sums.cancellations, sums.upgrades, sums.downgrades];
-    assert!(told.iter().all(|sum| *sum > 3), "too little happened to tell fields apart: {told:?}");
+    assert!(told.iter().all(|sum| *sum > 3), "too few events to distinguish the fields: {told:?}");
 }

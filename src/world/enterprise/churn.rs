@@ -1,4 +1,4 @@
-//! Subscribers that leave: why, what it costs in reputation, and who may talk about it.
+//! Enterprise churn: reasons, reputation damage, and candidates for posts.
 
 use super::company::moved_relationship;
 use super::{Standing, Step};
@@ -10,12 +10,12 @@ use crate::quality::{quota_demand, relationship_as_read, relationship_bonus};
 use crate::random::Part;
 use crate::reputation::{ReputationCause, event_damage};
 
-/// A subscriber whose thread died today; companies like to talk about that.
+/// An enterprise subscriber whose thread died today and who may post about it.
 ///
-/// Threads that reappear tell it again every day.
+/// Threads that reappear report the loss again every day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CompanyLost {
-    /// The company.
+    /// Customer number of the enterprise.
     pub customer: u32,
     /// Its group.
     pub group: Group,
@@ -23,7 +23,7 @@ pub struct CompanyLost {
     pub n: u32,
     /// Whole seats.
     pub seats: u32,
-    /// Days it had been a subscriber; none if it has been gone for longer.
+    /// Days as a subscriber; `None` if the subscription ended earlier.
     pub days_subscribed: Option<u32>,
     /// How the thread began.
     pub kind: ThreadKind,
@@ -31,32 +31,32 @@ pub struct CompanyLost {
     pub blame: Blame,
 }
 
-/// Whose silence ended a thread.
+/// The side whose silence ended a thread.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Blame {
-    /// The company's.
+    /// The enterprise fell silent.
     Silence,
-    /// The player's.
+    /// The player did not answer.
     Timeout,
 }
 
-/// What decides why a company left.
+/// Inputs of the churn reason.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grounds {
-    /// Days its issue has been open, 0 without one.
+    /// Days that the enterprise's issue has been open, 0 without one.
     pub issue_days: u32,
-    /// Shared quality of its plan, without what was done for its group: of today if it fell silent, of this
-    /// morning if nobody answered.
+    /// Shared quality of the plan without targeted development: today's if the enterprise fell silent, this
+    /// morning's if the player did not answer.
     pub shared_quality: f64,
-    /// Bonus of its relationship.
+    /// Relationship bonus.
     pub relationship_bonus: f64,
-    /// What its quota is compared with, units.
+    /// Demand that is compared with the quota, units.
     pub demand: f64,
     /// Quota of its plan, units.
     pub quota: f64,
 }
 
-/// Why a company left; the first reason that holds.
+/// Returns why an enterprise left: the first reason that applies.
 pub fn churn_reason(blame: Blame, grounds: &Grounds, params: &Params) -> EndCause {
     let sales = &params.enterprise;
     let poor = match blame {
@@ -79,8 +79,8 @@ pub fn churn_reason(blame: Blame, grounds: &Grounds, params: &Params) -> EndCaus
 }
 
 impl Step<'_> {
-    /// Loses the subscriber of a thread. The damage to the reputation is done whether or not it still is one, so
-    /// threads that reappear do it every day.
+    /// Ends the subscription of the thread's customer. Reputation is damaged even if the subscription already
+    /// ended, so threads that reappear damage it every day.
     pub(super) fn lose_subscriber(&mut self, thread: usize, blame: Blame, relationship_delta: f64) {
         let own = &self.enterprise.threads[thread];
         let (customer, group, kind, number) = (own.customer, own.group, own.kind, own.number);
@@ -117,7 +117,7 @@ impl Step<'_> {
             customer: company.customer,
             group: company.group,
             seats: row.seats as u32,
-            // Who got no answer is gone at once, on paper at the end of the month that was agreed on.
+            // After a timeout the customer leaves today, but the recorded end is the end of the agreed month.
             day: match blame {
                 Blame::Silence => today,
                 Blame::Timeout => company.contract_end_day.max(today),
@@ -180,7 +180,7 @@ mod tests {
             assert_eq!(churn_reason(Blame::Silence, &grounds, &params), reason, "{grounds:?}");
         }
         for (shared, reason) in [(0.1499, EndCause::QualityChange), (0.16, EndCause::PriceSensitivity)] {
-            // Neither relationship nor quota count when nobody answered.
+            // Relationship and quota do not count after a timeout.
             let grounds = grounds(0, shared, 0.0, 5000.0);
             assert_eq!(churn_reason(Blame::Timeout, &grounds, &params), reason, "{grounds:?}");
         }

@@ -1,4 +1,4 @@
-//! Companies that negotiate: what stays the same about them, and where they stand.
+//! Enterprises that negotiate: their fixed traits and their status.
 
 use crate::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, canonical};
 use crate::customers::Customers;
@@ -9,7 +9,7 @@ use crate::identifiers::Group;
 use crate::params::{EnterpriseParams as Sales, Params};
 use crate::random::{Part, Streams};
 
-/// A company that has asked for an offer and is not forgotten yet.
+/// An enterprise that has requested an offer and is still tracked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Company {
     /// Customer number.
@@ -20,24 +20,24 @@ pub struct Company {
     pub n: u32,
     /// Subscription number.
     pub subscription: u32,
-    /// How it negotiates.
+    /// Negotiation traits.
     pub negotiator: Negotiator,
-    /// Picks of its profile.
+    /// Profile attributes.
     pub persona: PersonaPicks,
-    /// Day on which the month ends that was agreed on last; 0 before the first deal.
+    /// Last day of the most recently agreed month; 0 before the first deal.
     pub contract_end_day: u32,
-    /// Where it stands.
+    /// Its current status.
     pub standing: Standing,
 }
 
-/// Where a company stands.
+/// Status of an enterprise.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Standing {
-    /// It negotiates about a first deal; the row it will have as a subscriber.
+    /// It negotiates a first deal; the row that it will have as a subscriber.
     Lead(Subscriber),
-    /// It is a subscriber: its row stands in the columns.
+    /// It is a subscriber; its row is in the columns.
     Subscriber,
-    /// It was lost; its row as of then, while a thread of it still fires.
+    /// It was lost; its last row, kept while one of its threads still triggers.
     Gone(Subscriber),
 }
 
@@ -68,7 +68,7 @@ impl Restore for Standing {
 }
 
 impl Company {
-    /// Its row, wherever that stands.
+    /// Returns its row, from its status or from the columns.
     pub fn row(&self, customers: &Customers) -> Option<Subscriber> {
         match self.standing {
             Standing::Lead(row) | Standing::Gone(row) => Some(row),
@@ -76,12 +76,12 @@ impl Company {
         }
     }
 
-    /// Whether it has an active subscription.
+    /// Returns whether it has an active subscription.
     pub fn is_subscriber(&self) -> bool {
         self.standing == Standing::Subscriber
     }
 
-    /// Sets its relationship, wherever its row stands.
+    /// Sets its relationship in its status or in the columns.
     pub fn set_relationship(&mut self, relationship: f64, customers: &mut Customers) {
         match &mut self.standing {
             Standing::Lead(row) | Standing::Gone(row) => row.relationship = relationship,
@@ -94,7 +94,7 @@ impl Company {
         }
     }
 
-    /// By how much it misjudges quality in its first negotiation: one factor, for ever.
+    /// Returns the factor by which it misjudges quality in its first negotiation, constant for each enterprise.
     pub fn first_impression(&self, params: &Params, streams: &Streams) -> f64 {
         let quality = &params.quality;
         streams
@@ -103,7 +103,7 @@ impl Company {
     }
 }
 
-/// Relationship after a change, within its bounds.
+/// Returns the relationship after a change, clamped to its bounds.
 pub fn moved_relationship(relationship: f64, change: f64, sales: &Sales) -> f64 {
     (relationship + change).clamp(sales.relationship_min, sales.relationship_max)
 }

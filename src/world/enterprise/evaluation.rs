@@ -1,4 +1,4 @@
-//! How a company judges offerings: take the best, name a price, or fall silent.
+//! How an enterprise responds to offerings: accept the best, make a counter-offer, or fall silent.
 
 use crate::customers::curve::{Curve, required_quality};
 use crate::events::Offering;
@@ -6,36 +6,37 @@ use crate::identifiers::ByPlan;
 use crate::params::Params;
 use novamind_base::notation::round_to;
 
-/// What a company answers.
+/// The response of an enterprise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Answer {
-    /// It takes the offering at this position.
+    /// Accepts the offering at this position.
     Accept(usize),
-    /// It names a price for the plan of the offering at this position, dollars a month and seat.
+    /// Names a price for the plan of the offering at this position, dollars a month and seat.
     Counter(usize, f64),
-    /// It never answers again.
+    /// Falls silent for good.
     Silence,
 }
 
-/// The side that judges.
+/// The values with which an enterprise evaluates offerings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Judge {
-    /// Its curve, with everything the market added to it.
+    /// Its curve, including all market drift.
     pub curve: Curve,
-    /// Quality it perceives on each plan.
+    /// Perceived quality of each plan.
     pub quality: ByPlan<f64>,
-    /// First bid as a share of the most it would pay.
+    /// First bid as a share of the highest acceptable price.
     pub initial_offer_factor: f64,
-    /// Turns it takes part in.
+    /// Maximum number of turns.
     pub max_turns: u32,
 }
 
-/// Quality beyond what the price requires.
+/// Returns the quality in excess of what the price requires.
 pub fn surplus(quality: f64, price: f64, curve: &Curve, params: &Params) -> f64 {
     quality - required_quality(price, curve, params)
 }
 
-/// The highest price that a quality is enough for, by halving 0..=c_max; 0 if it is not enough for nothing.
+/// Returns the highest price for which a quality suffices, by bisection of 0..=c_max, or 0 if it does not
+/// even suffice for price 0.
 pub fn highest_price(quality: f64, curve: &Curve, params: &Params) -> f64 {
     if quality < required_quality(0.0, curve, params) {
         return 0.0;
@@ -52,8 +53,8 @@ pub fn highest_price(quality: f64, curve: &Curve, params: &Params) -> f64 {
     low
 }
 
-/// The price a company names after this many turns: it starts at its first bid and closes a share of the gap to
-/// the highest price with every turn; rounded to cents.
+/// Returns the price of a counter-offer after this many turns, rounded to cents. It starts at the first bid
+/// and closes a share of the gap to the highest price with each turn.
 pub fn counter_price(highest: f64, initial_offer_factor: f64, turns: u32, params: &Params) -> f64 {
     let sales = &params.enterprise;
     let mut bid = initial_offer_factor * highest;
@@ -64,7 +65,7 @@ pub fn counter_price(highest: f64, initial_offer_factor: f64, turns: u32, params
 }
 
 impl Judge {
-    /// The answer to offerings when the last turn of the thread has this number.
+    /// Returns the response to offerings if the last turn of the thread has this number.
     pub fn answer(&self, offerings: &[Offering], turn: u32, params: &Params) -> Answer {
         if turn >= self.max_turns {
             return Answer::Silence;
@@ -85,7 +86,7 @@ impl Judge {
         if price > 0.0 { Answer::Counter(at, price) } else { Answer::Silence }
     }
 
-    /// Position and surplus of the best of those that fit, the first one on ties.
+    /// Returns position and surplus of the best suitable offering, the first one on ties.
     fn best(
         &self,
         offerings: &[Offering],
@@ -108,12 +109,12 @@ pub(super) mod tests {
     use super::*;
     use crate::identifiers::Plan;
 
-    /// The reference company K of `docs/mechanics/enterprise/evaluation.md#check-values`.
+    /// The reference enterprise K of `docs/mechanics/enterprise/evaluation.md#check-values`.
     pub(in crate::enterprise) const K: Curve =
         Curve { steepness_left: 1.0, steepness_right: 2.0, c_max: 60.0, q_min: 0.5, q_max: 0.95 };
 
     fn near(actual: f64, expected: f64) {
-        assert!((actual - expected).abs() < 1e-9, "{actual} instead of {expected}");
+        assert!((actual - expected).abs() < 1e-9, "got {actual}, expected {expected}");
     }
 
     fn offers(list: &[(Plan, f64)]) -> Vec<Offering> {
@@ -218,10 +219,10 @@ pub(super) mod tests {
         let mut params = Params::shipped();
         params.fidelity.deal_price_ceiling = true;
         let own = judge(0.9, 0.96, 1.1);
-        // The dear offering has the greatest surplus, the affordable one is taken.
+        // The expensive offering has the largest surplus, but the affordable one is accepted.
         let mixed = offers(&[(Plan::C, 61.0), (Plan::B, 58.0)]);
         assert_eq!(own.answer(&mixed, 1, &params), Answer::Accept(1));
-        // Nothing is affordable: the best of all decides the plan of the counter-offer.
+        // If no offering is affordable, the best of all determines the plan of the counter-offer.
         let dear = offers(&[(Plan::B, 61.0), (Plan::C, 70.0)]);
         let Answer::Counter(1, price) = own.answer(&dear, 1, &params) else { panic!("a counter-offer") };
         near(price, counter_price(60.0, 0.75, 1, &params));

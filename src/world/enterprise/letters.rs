@@ -1,6 +1,6 @@
-//! What the player writes to companies between two weeks.
+//! Messages that the player sends to enterprises between two weeks.
 //!
-//! A letter is decided and its draws are made ([`Enterprise::address`]) before anything changes
+//! Messages and their random draws are resolved ([`Enterprise::address`]) before anything changes
 //! ([`Enterprise::send`], [`Enterprise::reject`]).
 
 use std::collections::BTreeMap;
@@ -13,7 +13,7 @@ use crate::events::{EndCause, Facts, Offering, Sender, ThreadKind, TurnContent};
 use crate::params::{EnterpriseParams as Sales, Params};
 use crate::random::{Part, Streams};
 
-/// Offerings for one company.
+/// Offerings for one enterprise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Proposal {
     /// Customer number.
@@ -22,39 +22,39 @@ pub struct Proposal {
     pub offerings: Vec<Offering>,
 }
 
-/// A proposal on its way.
+/// An offer with its thread and its reply day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Letter {
     /// Customer number.
     pub customer: u32,
-    /// Number of the thread; a new one unless it is open.
+    /// Number of the thread: the open one, or a new one.
     pub thread: u32,
-    /// Whether the letter begins the thread.
+    /// Whether the message starts the thread.
     pub begins: bool,
-    /// Number of its turn.
+    /// Number of its turn in the thread.
     pub turn: u32,
-    /// What it offers.
+    /// The offerings.
     pub offerings: Vec<Offering>,
-    /// Relationship after a late answer; none if nothing changes.
+    /// Relationship after a late answer; `None` if it does not change.
     pub relationship: Option<f64>,
-    /// Day on which the company answers.
+    /// Day on which the enterprise replies.
     pub reply_day: u32,
 }
 
-/// Days until a company answers: its mean and spread with a standard normal draw, rounded half to even, at least
-/// one.
+/// Returns the days until an enterprise replies, from the mean, the standard deviation and a standard normal
+/// draw: rounded half to even, at least one.
 pub fn reply_delay(mean: f64, std: f64, z: f64, sales: &Sales) -> u32 {
     (mean + std * z).round_ties_even().max(f64::from(sales.reply_delay_min_days)) as u32
 }
 
-/// What an answer after this many days adds to the relationship; not positive.
+/// Returns the change of the relationship for an answer after this many days; never positive.
 pub fn late_penalty(days: u32, sales: &Sales) -> f64 {
     sales.late_reply_relationship_delta_per_day * f64::from(days.saturating_sub(sales.late_reply_free_days))
 }
 
 impl Enterprise {
-    /// Finds the thread of each proposal as things stand now, and draws when the company answers. Proposals to
-    /// companies that are neither in an open thread nor subscribers are left out.
+    /// Finds the thread of each proposal and draws the reply day. Proposals to enterprises that neither have
+    /// an open thread nor subscribe are dropped.
     pub fn address(
         &self,
         proposals: &[Proposal],
@@ -103,7 +103,7 @@ impl Enterprise {
         letters
     }
 
-    /// Sends letters that were addressed to this state. Only the newest turn of a thread is answered.
+    /// Sends messages that were resolved for this state. Enterprises reply only to the newest turn of a thread.
     pub fn send(&mut self, letters: &[Letter], day: u32, customers: &mut Customers, facts: &mut Facts) {
         for letter in letters {
             let Some(at) = self.position(letter.customer) else { continue };
@@ -126,7 +126,7 @@ impl Enterprise {
         }
     }
 
-    /// Ends open threads by their numbers. A lead is lost by it; subscribers stay.
+    /// Ends open threads by number. Leads are lost; subscribers stay.
     pub fn reject(&mut self, threads: &[u32], day: u32, facts: &mut Facts) {
         for number in threads {
             let Some(thread) = self.index_of(*number).filter(|at| self.threads[*at].is_open()) else {
@@ -149,8 +149,8 @@ impl Enterprise {
     }
 }
 
-/// Days since the customer's newest turn; none where lateness does not count: the player wrote last, or the
-/// customer has not written yet.
+/// Returns the days since the customer's newest turn, or `None` if lateness does not count: the player wrote
+/// last, or the customer has not written yet.
 pub fn late_days(thread: &Thread, day: u32) -> Option<u32> {
     if thread.last().sender == Sender::Agent {
         return None;

@@ -1,8 +1,8 @@
-//! Companies: leads that ask for an offer, subscribers that threaten to leave or ask for another plan, and what
-//! becomes of the threads (`docs/mechanics/enterprise/README.md`).
+//! Enterprises: leads that request an offer, subscribers that threaten to leave or request another plan, and
+//! their threads (`docs/mechanics/enterprise/README.md`).
 //!
-//! Start with [`Enterprise::step`], the order of the enterprise part of a day. What the player writes between
-//! two weeks is in [`letters`].
+//! Start with [`Enterprise::step`], the enterprise part of a day. Messages that the player sends between two
+//! weeks are in [`letters`].
 
 pub mod churn;
 mod company;
@@ -36,16 +36,17 @@ use super::product::Product;
 use crate::customers::drift::DriftTotals;
 use crate::reputation::{OnWrite, ReputationBook};
 
-/// Negotiations with companies.
+/// Negotiations with enterprises.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Enterprise {
     /// Number of the next thread.
     pub next_thread: u32,
     /// Number of the next turn, over all threads.
     pub next_message: u32,
-    /// Threads that are open or still fire, in the order of their numbers.
+    /// Threads that are open or can still trigger, in ascending order of their numbers.
     pub threads: Vec<Thread>,
-    /// Leads and subscribers, and lost ones while a thread of theirs fires, in the order of their numbers.
+    /// Leads and subscribers, and lost enterprises whose threads can still trigger, in ascending order of
+    /// their numbers.
     pub companies: Vec<Company>,
 }
 
@@ -57,29 +58,29 @@ impl Default for Enterprise {
     }
 }
 
-/// What the negotiations of a day share.
+/// Shared inputs of the negotiations of a day.
 pub struct Negotiation<'a> {
     /// The day.
     pub day: &'a DayContext<'a>,
-    /// The product, with today's improvements.
+    /// The product, including today's improvements.
     pub product: &'a Product,
-    /// What the market has added to curves, with today's changes.
+    /// Market drift, including today's changes.
     pub drift: &'a DriftTotals,
 }
 
-/// What the rest of the day has to know.
+/// Results that later steps of the day need.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct EnterpriseDay {
-    /// Customers that pay nothing today: their threat to leave was open this morning.
+    /// Customers who pay nothing today because their threat to leave was open this morning.
     pub suspended: BTreeSet<u32>,
     /// Subscribers whose threads died, as candidates for posts.
     pub lost: Vec<CompanyLost>,
-    /// Seats of companies that signed today.
+    /// Seats of enterprises that signed today.
     pub new_seats: u32,
 }
 
 impl Enterprise {
-    /// Opens the thread of a new lead: one turn of the market, and a notification that names nobody.
+    /// Opens the thread of a new lead: one turn by the system, and a notification that does not name the enterprise.
     pub fn open_lead(&mut self, day: u32, company: Company, facts: &mut Facts) {
         let seats = match &company.standing {
             Standing::Lead(row) | Standing::Gone(row) => row.seats as u32,
@@ -91,8 +92,8 @@ impl Enterprise {
         facts.notices.push(Notice::EnterpriseLead);
     }
 
-    /// The negotiations of a day. Everything goes by the threads as they were this morning: silence of the player,
-    /// answers that are due, then what subscribers without a thread begin by themselves.
+    /// Runs the negotiations of a day, based on the threads of this morning: timeouts, due replies, then new
+    /// threads of subscribers without one.
     pub fn step(
         &mut self,
         customers: &mut Customers,
@@ -124,12 +125,12 @@ impl Enterprise {
         result
     }
 
-    /// A company by its customer number.
+    /// Returns an enterprise by its customer number.
     pub fn company(&self, customer: u32) -> Option<&Company> {
         self.position(customer).map(|at| &self.companies[at])
     }
 
-    /// The open threads, by company.
+    /// Returns the open threads by enterprise.
     pub fn open_threads(&self) -> OpenThreads<'_> {
         OpenThreads::among(&self.threads)
     }
@@ -138,7 +139,7 @@ impl Enterprise {
         self.companies.binary_search_by_key(&customer, |company| company.customer).ok()
     }
 
-    /// The threads of this morning that are not closed, each with the turn it goes by.
+    /// Returns this morning's threads that are not closed, each with its active turn.
     fn live_view(&self, reappearing: bool) -> Vec<Live> {
         let live = |(at, thread): (usize, &Thread)| {
             let turn = thread.live(reappearing)?;
@@ -147,7 +148,7 @@ impl Enterprise {
         self.threads.iter().enumerate().filter_map(live).collect()
     }
 
-    #[expect(clippy::too_many_arguments, reason = "the first turn of a thread says everything about it")]
+    #[expect(clippy::too_many_arguments, reason = "the first turn has all values of a thread")]
     fn open_thread(
         &mut self,
         day: u32,
@@ -167,8 +168,7 @@ impl Enterprise {
         thread
     }
 
-    /// Appends a turn with this number to a thread.
-    #[expect(clippy::too_many_arguments, reason = "a turn has that many sides")]
+    #[expect(clippy::too_many_arguments, reason = "a turn has that many values")]
     fn say(
         &mut self,
         thread: usize,
@@ -205,7 +205,7 @@ impl Enterprise {
         });
     }
 
-    /// Forgets threads that are over, and lost companies without a thread.
+    /// Removes finished threads, and lost enterprises without a thread.
     fn forget(&mut self, is_over: impl Fn(&Thread) -> bool) {
         self.threads.retain(|thread| !is_over(thread));
         let still: BTreeSet<u32> = self.threads.iter().map(|thread| thread.customer).collect();
@@ -214,22 +214,22 @@ impl Enterprise {
     }
 }
 
-/// A thread of this morning and the turn it goes by.
+/// A thread of this morning and its active turn.
 #[derive(Debug, Clone, Copy)]
 struct Live {
-    /// Position among the threads.
+    /// Index into the threads.
     thread: usize,
     sender: Sender,
     day: u32,
     reply_day: Option<u32>,
 }
 
-/// The negotiations of one day under way.
+/// State of the negotiations of one day.
 struct Step<'a> {
     enterprise: &'a mut Enterprise,
     customers: &'a mut Customers,
     reputation: &'a mut ReputationBook,
-    /// Who is told of what moves reputations.
+    /// Called after each change of a reputation.
     told: &'a mut OnWrite<'a>,
     day: &'a DayContext<'a>,
     talks: &'a Negotiation<'a>,
@@ -242,7 +242,6 @@ impl Step<'_> {
         self.day.day()
     }
 
-    /// Customers whose threat to leave was open this morning.
     fn threatening(&self, view: &[Live]) -> BTreeSet<u32> {
         let threads = view.iter().map(|live| &self.enterprise.threads[live.thread]);
         threads
@@ -251,7 +250,6 @@ impl Step<'_> {
             .collect()
     }
 
-    /// Loses those whom the player did not answer for too long.
     fn time_out(&mut self, view: &[Live]) {
         let patience = self.day.params.enterprise.agent_response_timeout_days;
         for live in view.iter().filter(|live| live.sender != Sender::Agent) {
@@ -262,13 +260,12 @@ impl Step<'_> {
         }
     }
 
-    /// Whole seats of the company of a thread.
     fn seats_of(&self, thread: usize) -> u32 {
         let company = self.enterprise.company(self.enterprise.threads[thread].customer);
         company.and_then(|company| company.row(self.customers)).map_or(1, |row| row.seats as u32)
     }
 
-    /// A turn of today in a thread, numbered after the last one.
+    /// Appends a turn of today with the next number to a thread.
     fn say(&mut self, thread: usize, sender: Sender, seats: u32, content: TurnContent) {
         let number = self.enterprise.threads[thread].last().number + 1;
         let today = self.today();

@@ -1,17 +1,17 @@
-//! Open threads by company, for calls that name many companies: of a large company's threads, few are open.
+//! An index of open threads by enterprise, for calls that name many enterprises. Few of their threads are open.
 
 use std::collections::BTreeMap;
 
 use super::Thread;
 
-/// The open threads of a state, by company.
+/// The open threads of a state by enterprise.
 pub struct OpenThreads<'a> {
-    /// Each company's, the one with the newest turn last.
+    /// Threads of each enterprise, sorted by newest turn.
     by_customer: BTreeMap<u32, Vec<&'a Thread>>,
 }
 
 impl<'a> OpenThreads<'a> {
-    /// Those of a list.
+    /// Indexes the open threads of a list.
     pub(super) fn among(threads: &'a [Thread]) -> OpenThreads<'a> {
         let mut by_customer: BTreeMap<u32, Vec<&Thread>> = BTreeMap::new();
         for thread in threads.iter().filter(|thread| thread.is_open()) {
@@ -23,12 +23,12 @@ impl<'a> OpenThreads<'a> {
         OpenThreads { by_customer }
     }
 
-    /// The one of a company with the newest turn.
+    /// Returns the enterprise's thread with the newest turn.
     pub fn newest(&self, customer: u32) -> Option<&'a Thread> {
         self.by_customer.get(&customer)?.last().copied()
     }
 
-    /// The same, taken out: the next one of the company is another.
+    /// Removes and returns the enterprise's thread with the newest turn.
     pub fn take_newest(&mut self, customer: u32) -> Option<&'a Thread> {
         self.by_customer.get_mut(&customer)?.pop()
     }

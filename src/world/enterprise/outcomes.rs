@@ -1,4 +1,4 @@
-//! How threads end: with a deal, in silence, or because nobody answered.
+//! How threads end: with a deal, by silence of the enterprise, or by timeout.
 
 use super::churn::Blame;
 use super::company::moved_relationship;
@@ -14,7 +14,7 @@ use crate::retention::refresh_required;
 use crate::retention::renewal::{ongoing_discount, terms};
 
 impl Step<'_> {
-    /// A company takes an offering: the deal holds from today on.
+    /// Accepts an offering; the deal takes effect today.
     pub(super) fn accept(&mut self, thread: usize, offering: Offering) {
         let seats = self.seats_of(thread);
         self.say(thread, Sender::Customer, seats, TurnContent::Acceptance(offering));
@@ -24,7 +24,7 @@ impl Step<'_> {
         self.facts.notices.push(Notice::DealWon { price: offering.price });
     }
 
-    /// Puts a deal into force, as far as there is anybody left to keep it.
+    /// Puts a deal into force if the enterprise is still a lead or subscriber.
     fn close_deal(&mut self, thread: usize, offering: Offering, seats: u32) {
         let own = &self.enterprise.threads[thread];
         let (customer, kind) = (own.customer, own.kind);
@@ -57,7 +57,7 @@ impl Step<'_> {
         self.facts.changes.extend(changed);
     }
 
-    /// A lead becomes a subscriber. It is billed on the day of the month on which it came.
+    /// Turns a lead into a subscriber, billed on the day of the month on which it arrived.
     fn activate(&mut self, customer: u32, lead: Subscriber, offering: Offering) -> Option<TermsChanged> {
         let (params, group) = (self.day.params, self.group_of(customer));
         let promotion = ongoing_discount(customer, group, offering.plan, self.day.settings, params);
@@ -82,7 +82,7 @@ impl Step<'_> {
         self.renewed_terms(customer)
     }
 
-    /// A subscriber gets new terms; budget, tenure and billing day stay.
+    /// Changes the terms of a subscriber; budget, tenure and billing day stay.
     fn change_terms(&mut self, customer: u32, offering: Offering) -> Option<TermsChanged> {
         let (params, group) = (self.day.params, self.group_of(customer));
         let promotion = ongoing_discount(customer, group, offering.plan, self.day.settings, params);
@@ -97,7 +97,7 @@ impl Step<'_> {
         self.renewed_terms(customer)
     }
 
-    /// Refreshes what follows from the terms of a subscriber, and returns them.
+    /// Updates the required quality of a subscriber and returns its terms.
     fn renewed_terms(&mut self, customer: u32) -> Option<TermsChanged> {
         let group = self.group_of(customer);
         let n = self.enterprise.company(customer)?.n;
@@ -109,10 +109,10 @@ impl Step<'_> {
     }
 
     fn group_of(&self, customer: u32) -> crate::identifiers::Group {
-        self.enterprise.company(customer).expect("a company with a thread is not forgotten").group
+        self.enterprise.company(customer).expect("an enterprise with a thread is kept").group
     }
 
-    /// A company never answers again: no turn shows it, and the newest one is marked.
+    /// Ends a thread because the enterprise falls silent. No turn is added; the newest one is marked dead.
     pub(super) fn fall_silent(&mut self, thread: usize) {
         let own = &mut self.enterprise.threads[thread];
         own.last_mut().dead = true;
@@ -130,7 +130,7 @@ impl Step<'_> {
         self.lose_subscriber(thread, Blame::Silence, delta);
     }
 
-    /// The player did not answer for too long.
+    /// Ends a thread because the player did not answer for too long.
     pub(super) fn give_up(&mut self, thread: usize, days: u32) {
         let own = &mut self.enterprise.threads[thread];
         let (customer, kind) = (own.customer, own.kind);
@@ -151,7 +151,7 @@ impl Step<'_> {
         }
     }
 
-    /// Loses the lead of a thread, unless it is lost already.
+    /// Marks the lead of a thread as lost unless it already is.
     fn lose_lead(&mut self, thread: usize, cause: EndCause) {
         let (today, customer) = (self.today(), self.enterprise.threads[thread].customer);
         if let Some(ending) = self.enterprise.lose_lead(customer, today, cause) {
@@ -161,7 +161,7 @@ impl Step<'_> {
 }
 
 impl super::Enterprise {
-    /// Loses a lead, for good; none if it is none any more.
+    /// Marks a lead as lost. Returns `None` if it is not a lead.
     pub(super) fn lose_lead(
         &mut self,
         customer: u32,

@@ -1,4 +1,4 @@
-//! Quality as companies perceive it: in a negotiation, and every day (`docs/mechanics/enterprise/quality.md`).
+//! Quality as enterprises perceive it in negotiations and every day (`docs/mechanics/enterprise/quality.md`).
 
 use super::Negotiation;
 use crate::customers::columns::Subscriber;
@@ -11,8 +11,8 @@ use crate::quality::{
 };
 
 impl Negotiation<'_> {
-    /// Quality of each plan in a negotiation, before the first impression of a lead: today's product, no tenure,
-    /// no weekday; quotas count only where there is an active subscription.
+    /// Returns the quality of each plan in a negotiation, before a lead's first impression: today's product,
+    /// no tenure, no weekday. Quotas count only for active subscriptions.
     pub(super) fn offered_quality(&self, group: Group, row: &Subscriber, active: bool) -> ByPlan<f64> {
         let product = self.product.quality(group, self.day.params);
         let quality = &self.day.params.quality;
@@ -26,7 +26,7 @@ impl Negotiation<'_> {
         })
     }
 
-    /// Quality of each plan as a subscriber lives with it: this morning's product, tenure, weekday; no bounds.
+    /// Returns the quality of each plan for a subscriber: this morning's product, tenure and weekday, without bounds.
     pub(super) fn lived_quality(&self, group: Group, row: &Subscriber) -> ByPlan<f64> {
         let demand = quota_demand(row.usage_rate * self.day.morning.weekday, row.usage_rate, self.day.params);
         let tenure = self.day.tenure.bonus(self.day.day().saturating_sub(row.start_day));
@@ -53,14 +53,14 @@ impl Negotiation<'_> {
         perceived_quality(experience, self.day.params.fidelity.perceived_quality)
     }
 
-    /// Curve in a negotiation, with everything the market has added to it by now.
+    /// Returns the curve in a negotiation, including all market drift.
     pub(super) fn offered_curve(&self, group: Group, row: &Subscriber) -> Curve {
         let expectation = self.drift.expectation(group);
         let floor = self.day.params.quality.read_time_c_max_min;
         curve_of(row).drifted(expectation.quality, expectation.c_max, floor)
     }
 
-    /// Curve of every day, with what the market had added this morning.
+    /// Returns the curve for daily evaluation, including the market drift of this morning.
     pub(super) fn lived_curve(&self, group: Group, row: &Subscriber) -> Curve {
         let expectation = self.day.morning.expectations[group];
         let floor = self.day.params.quality.read_time_c_max_min;
@@ -85,7 +85,7 @@ mod tests {
 
     fn assert_near(actual: ByPlan<f64>, expected: [f64; 3]) {
         for (own, expected) in actual.iter().zip(expected) {
-            assert!((own - expected).abs() < 1e-10, "{actual:?} instead of {expected:?}");
+            assert!((own - expected).abs() < 1e-10, "got {actual:?}, expected {expected:?}");
         }
     }
 
@@ -131,7 +131,7 @@ mod tests {
         };
         let own = kit.with(|day| day.offered_quality(kit.group, &row, true));
         for (own, expected) in own.iter().zip([0.156815793, 0.314315793, 0.461815793]) {
-            assert!((own - expected).abs() < 1e-9, "{own} instead of {expected}");
+            assert!((own - expected).abs() < 1e-9, "got {own}, expected {expected}");
         }
     }
 }

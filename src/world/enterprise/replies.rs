@@ -1,4 +1,4 @@
-//! Answers that are due today.
+//! Replies that are due today.
 
 use super::evaluation::{Answer, Judge};
 use super::{Enterprise, Live, Negotiation, Step, Thread};
@@ -6,7 +6,7 @@ use crate::customers::Customers;
 use crate::customers::columns::Subscriber;
 use crate::events::{Notice, Offering, Sender, ThreadKind, TurnContent};
 
-/// An answer that was decided and is still to be given.
+/// A decided reply that has not been sent.
 struct Due {
     thread: usize,
     answer: Answer,
@@ -14,13 +14,13 @@ struct Due {
 }
 
 impl Enterprise {
-    /// Who would judge what is offered in a thread if the answer were due today; none once the company is forgotten.
+    /// Returns the evaluator for a thread as of today, or `None` if the enterprise is no longer tracked.
     pub fn judge(&self, thread: &Thread, customers: &Customers, talks: &Negotiation<'_>) -> Option<Judge> {
         let row = self.company(thread.customer)?.row(customers)?;
         self.judge_of(thread, &row, talks)
     }
 
-    /// The same, if the row of the company were this one.
+    /// Like [`Enterprise::judge`], with a given row of the enterprise.
     pub fn judge_of(&self, thread: &Thread, row: &Subscriber, talks: &Negotiation<'_>) -> Option<Judge> {
         let company = self.company(thread.customer)?;
         let mut quality = talks.offered_quality(thread.group, row, company.is_subscriber());
@@ -38,7 +38,7 @@ impl Enterprise {
 }
 
 impl Step<'_> {
-    /// Lets the companies answer whose day has come. All judge by the state before the first of them answers.
+    /// Sends due replies. All are decided from the state before the first one.
     pub(super) fn receive_replies(&mut self, view: &[Live]) {
         let today = self.today();
         let due = view.iter().filter(|live| live.sender == Sender::Agent && live.reply_day == Some(today));

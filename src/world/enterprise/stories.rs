@@ -1,4 +1,4 @@
-//! Threads from their first turn to their end.
+//! Scenario tests of threads from their first turn to their end.
 
 use super::test_kit::Kit;
 use super::{EnterpriseDay, Standing};
@@ -8,10 +8,10 @@ use crate::events::{
 };
 use crate::identifiers::Plan;
 
-/// A lead of day 0 that answers after `delay` days and takes part in `turns` turns.
+/// A lead of day 0 that replies after `delay` days and takes at most `turns` turns.
 fn lead(delay: f64, turns: u32) -> Kit {
     let mut kit = Kit::new(0);
-    // No first impression: quality is what it is.
+    // Without first impression, perceived quality equals offered quality.
     kit.params.quality.initial_decision_noise_min = 1.0;
     kit.params.quality.initial_decision_noise_max = 1.0;
     let company = kit.company(delay, turns);
@@ -23,7 +23,6 @@ fn days(kit: &mut Kit, days: std::ops::RangeInclusive<u32>) -> Vec<EnterpriseDay
     days.map(|day| kit.day(day)).collect()
 }
 
-/// Sender and number of the turns of the last day.
 fn turns(kit: &Kit) -> Vec<(Sender, u32)> {
     kit.facts.turns.iter().map(|turn| (turn.sender, turn.number)).collect()
 }
@@ -81,7 +80,7 @@ fn silence_of_either_side_loses_a_lead() {
     assert_eq!((kit.facts.endings[0].day, kit.facts.endings[0].cause), (7, EndCause::LeadSilent));
     for day in 8..=14 {
         kit.day(day);
-        // The counter-offer of day 3 is the newest turn that did not die.
+        // The counter-offer of day 3 is the newest turn that is not dead.
         let again = Notice::LeadLossRepeated {
             days: day - 3,
             customer: 2,
@@ -109,7 +108,7 @@ fn dead_threads_stay_dead_where_they_should() {
     assert!(kit.facts.notices.is_empty());
 }
 
-/// A subscriber that finds its price too high from day 4 on.
+/// A subscriber whose price is too high from day 4 on.
 fn unhappy() -> Kit {
     let mut kit = Kit::new(3);
     kit.subscribe(6, |row| (row.listed_price, row.relationship) = (59.0, 0.6));
@@ -129,7 +128,7 @@ fn a_threat_that_nobody_answers_loses_the_subscriber() {
     kit.enterprise.reject(&[thread], 4, &mut kit.facts);
     assert_eq!(turns(&kit), [(Sender::Agent, 2)]);
     assert!(kit.facts.endings.is_empty() && kit.enterprise.open_threads().newest(2).is_none());
-    // The next day it begins again, and this time nobody answers.
+    // The next day it starts again, and the player does not answer.
     let opened = kit.day(5);
     assert!(opened.suspended.is_empty(), "a thread suspends from the day after");
     assert_eq!(kit.enterprise.threads[0].kind, ThreadKind::ChurnPrevention);
@@ -143,11 +142,11 @@ fn a_threat_that_nobody_answers_loses_the_subscriber() {
     assert_eq!((ending.day, ending.status), (33, SubscriptionStatus::Cancelled));
     assert_eq!(ending.cause, EndCause::PriceSensitivity);
     assert_eq!(kit.customers.groups[kit.group].active(), 0);
-    let company = kit.enterprise.company(2).expect("its thread still fires").clone();
+    let company = kit.enterprise.company(2).expect("its thread can still trigger").clone();
     let relationship = company.row(&kit.customers).expect("a row").relationship;
     assert!((relationship - 0.3).abs() < 1e-12, "{relationship}");
     assert_eq!((lost.lost[0].days_subscribed, lost.lost[0].seats), (Some(9), 100));
-    // Nobody but the reputation notices that the thread fires every day.
+    // Only the reputation changes when the thread triggers again each day.
     let mut before = kit.reputation.of(kit.group);
     assert!(before < reputation);
     for day in 13..=16 {
@@ -169,7 +168,7 @@ fn a_settled_threat_suspends_payment_through_its_last_day() {
     kit.product.shared_bonus = 0.6;
     kit.send(&[(Plan::B, 30.0)]);
     let runs = days(&mut kit, 31..=33);
-    assert!(runs.iter().all(suspended), "also on the day it is settled");
+    assert!(runs.iter().all(suspended), "including the day on which it is settled");
     assert_eq!(kit.facts.notices, [Notice::DealWon { price: 30.0 }]);
     let deal = kit.facts.deals[0];
     assert_eq!(
@@ -178,7 +177,7 @@ fn a_settled_threat_suspends_payment_through_its_last_day() {
     );
     let row = kit.customers.groups[kit.group].row(1).expect("a subscriber");
     assert_eq!((row.listed_price, row.effective_price, row.start_day), (30.0, 30.0, 3));
-    assert!((row.relationship - 0.6).abs() < 1e-12, "only new deals please");
+    assert!((row.relationship - 0.6).abs() < 1e-12, "only new deals raise the relationship");
     assert!(!suspended(&kit.day(34)));
 }
 
@@ -198,18 +197,18 @@ fn a_bad_renegotiation_loses_the_customer() {
     let mut kit = Kit::new(3);
     kit.subscribe(6, |row| row.relationship = 0.5);
     kit.day(4);
-    assert!(kit.facts.turns.is_empty(), "it is content");
+    assert!(kit.facts.turns.is_empty(), "it is satisfied");
     let letters = kit.send(&[(Plan::A, 58.0)]);
     assert_eq!((letters[0].begins, letters[0].turn, letters[0].reply_day), (true, 0, 7));
     assert_eq!((kit.facts.turns[0].seats, kit.facts.turns[0].kind), (100, ThreadKind::Renegotiation));
-    // A product that is below the minimum for every price.
+    // A product below the minimum quality at every price.
     kit.product.shared_bonus = 0.1;
     kit.morning.product.0.iter_mut().for_each(|product| *product = 0.3);
     let runs = days(&mut kit, 5..=7);
     assert!(runs[2].lost[0].kind == ThreadKind::Renegotiation);
     assert_eq!(kit.facts.endings[0].cause, EndCause::QualityChange);
     assert_eq!(kit.facts.endings[0].day, 7);
-    // Its first offer was its last turn: nothing of it comes back.
+    // Its first offer was its last turn, so the thread does not reappear.
     assert!(kit.enterprise.threads.is_empty() && kit.enterprise.companies.is_empty());
     assert!(kit.day(20).lost.is_empty());
 }
@@ -226,7 +225,7 @@ fn repeated_offers_waste_turns_and_only_the_newest_counts() {
     kit.send(&[(Plan::B, 59.0)]);
     kit.send(&[(Plan::B, 20.0)]);
     days(&mut kit, 1..=3);
-    // Turn 2 of 2: silence, whatever is offered. The first letter's own day is still to come, and is silent too.
+    // Turn 2 of 2: silence, whatever is offered. The reply to the first message is still due and is silence too.
     assert_eq!(kit.facts.notices.first(), Some(&Notice::LeadSilent));
 }
 
@@ -236,10 +235,10 @@ fn a_late_answer_costs_relationship_once() {
     kit.send(&[(Plan::B, 59.0)]);
     days(&mut kit, 1..=7);
     let letters = kit.send(&[(Plan::B, 44.0)]);
-    // The counter-offer came on day 3: four days, three of them late.
+    // The counter-offer arrived on day 3: four days, three of them late.
     let relationship = letters[0].relationship.expect("a late answer");
     assert!((relationship - 0.44).abs() < 1e-12, "{relationship}");
-    assert_eq!(kit.send(&[(Plan::B, 44.0)])[0].relationship, None, "a second letter costs nothing more");
+    assert_eq!(kit.send(&[(Plan::B, 44.0)])[0].relationship, None, "a second message has no further penalty");
     let row = kit.enterprise.company(2).and_then(|own| own.row(&kit.customers)).expect("a row");
     assert!((row.relationship - 0.44).abs() < 1e-12);
 }

@@ -1,4 +1,4 @@
-//! A day of negotiations with plain values; tests change what matters to them.
+//! A negotiation day with simple values; tests change what they need.
 
 use super::evaluation::tests::K;
 use super::{Company, Enterprise, EnterpriseDay, Negotiation, Standing};
@@ -18,7 +18,7 @@ use crate::reputation::ReputationBook;
 use crate::settings::Settings;
 use crate::test_kit::{company_of, subscriber};
 
-/// Tiers 3, 4, 5, wide quotas, product quality 0.8 for everybody, nobody else in the world.
+/// Tiers 3, 4, 5, wide quotas, product quality 0.8 for all groups, no other customers.
 pub(super) struct Kit {
     pub params: Params,
     pub streams: Streams,
@@ -55,7 +55,7 @@ impl Kit {
         kit
     }
 
-    /// Begins a day: the morning takes over the product.
+    /// Starts a day with the current product.
     pub fn wake(&mut self, day: u32) {
         let quality = self.product.quality(self.group, &self.params);
         let prices = ByPlan([1e6; 3]);
@@ -70,7 +70,7 @@ impl Kit {
         self.facts.begin(day);
     }
 
-    /// The reference company K, number 2, first of its group, 100 seats.
+    /// The row of the reference enterprise K: customer 2, first of its group, 100 seats.
     pub fn row(&self) -> Subscriber {
         Subscriber {
             customer: 2,
@@ -91,7 +91,7 @@ impl Kit {
         }
     }
 
-    /// The company of K; `delay` days pass before it answers.
+    /// The reference enterprise K, which replies after `delay` days.
     pub fn company(&self, delay: f64, max_turns: u32) -> Company {
         let negotiator = Negotiator {
             reply_delay_mean: delay,
@@ -101,7 +101,7 @@ impl Kit {
         Company { negotiator, ..company_of(self.group, 1, 2, Standing::Lead(self.row())) }
     }
 
-    /// Makes K a subscriber since day 3 at these terms, with a contract to day 33.
+    /// Makes K a subscriber since day 3 with these terms and a contract until day 33.
     pub fn subscribe(&mut self, max_turns: u32, change: impl Fn(&mut Subscriber)) {
         let mut row = Subscriber {
             start_day: 3,
@@ -118,7 +118,7 @@ impl Kit {
         self.enterprise.companies.push(company);
     }
 
-    /// Runs `check` with the negotiations of the day.
+    /// Runs `check` with the negotiation context of the day.
     pub fn with<R>(&self, check: impl FnOnce(&Negotiation<'_>) -> R) -> R {
         let law = (&self.params, &self.streams);
         on_day(&self.morning, &self.settings, &ServiceDay::quiet(), law, |day| {
@@ -126,7 +126,7 @@ impl Kit {
         })
     }
 
-    /// The enterprise part of a day; afterwards the facts are those of that day alone.
+    /// Runs the enterprise part of a day; afterwards, the facts are those of that day only.
     pub fn day(&mut self, day: u32) -> EnterpriseDay {
         self.wake(day);
         let mut enterprise = std::mem::take(&mut self.enterprise);
@@ -140,7 +140,7 @@ impl Kit {
         result
     }
 
-    /// Sends one proposal to K on the day that just ran.
+    /// Sends one offer to K on the current day.
     pub fn send(&mut self, offerings: &[(crate::identifiers::Plan, f64)]) -> Vec<super::letters::Letter> {
         let day = self.morning.day;
         let offerings =

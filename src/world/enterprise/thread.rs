@@ -1,19 +1,19 @@
-//! Threads: who said what when, which row is the last, and which row is alive.
+//! Threads: their turns and which turn determines what happens next.
 
 use crate::canonical::canonical;
 use crate::events::{Offering, Sender, ThreadKind};
 use crate::identifiers::Group;
 
-/// A negotiation with one company. Closed threads are forgotten; dead ones only once they stay silent.
+/// A negotiation with one enterprise. Closed threads are removed at once, dead ones when they can no longer trigger.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Thread {
     /// Running number, from 1.
     pub number: u32,
-    /// The company.
+    /// Customer number of the enterprise.
     pub customer: u32,
     /// Its group.
     pub group: Group,
-    /// How it began.
+    /// How it started.
     pub kind: ThreadKind,
     /// Its turns; never empty.
     pub turns: Vec<Turn>,
@@ -21,24 +21,24 @@ pub struct Thread {
     pub closed: bool,
 }
 
-/// One turn, as far as the negotiation depends on it.
+/// The part of a turn that affects the negotiation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Turn {
     /// Running number over all threads.
     pub message: u32,
     /// Number within the thread; the turns of one call may share one.
     pub number: u32,
-    /// Who wrote it.
+    /// Sender of the turn.
     pub sender: Sender,
     /// Day.
     pub day: u32,
     /// Offerings of the player.
     pub offerings: Vec<Offering>,
-    /// Price that the company named, dollars a month and seat.
+    /// Price that the enterprise named, dollars a month and seat.
     pub asked: Option<f64>,
-    /// Day on which the company answers.
+    /// Day on which the enterprise replies.
     pub reply_day: Option<u32>,
-    /// The thread died with this turn as its last.
+    /// Whether the thread died with this turn as its last.
     pub dead: bool,
 }
 
@@ -48,28 +48,28 @@ canonical! {
 }
 
 impl Thread {
-    /// The newest turn.
+    /// Returns the newest turn.
     pub fn last(&self) -> &Turn {
         self.turns.last().expect("a thread has a first turn")
     }
 
-    /// The newest turn, to mark it.
+    /// Returns the newest turn for marking.
     pub fn last_mut(&mut self) -> &mut Turn {
         self.turns.last_mut().expect("a thread has a first turn")
     }
 
-    /// Whether both sides can still write.
+    /// Returns whether both sides can still write.
     pub fn is_open(&self) -> bool {
         !self.closed && !self.last().dead
     }
 
-    /// Whether the player is to write next.
+    /// Returns whether the player should write next.
     pub fn awaits_agent(&self) -> bool {
         self.is_open() && self.last().sender != Sender::Agent
     }
 
-    /// The newest turn that did not die: what the daily step goes by. Death marks only the last turn, so a dead
-    /// thread comes back with an older one unless `reappearing` says otherwise
+    /// Returns the newest turn that is not dead, which determines the daily step. Only the last turn is
+    /// marked dead, so a dead thread reappears with an older turn unless `reappearing` is false
     /// (`docs/mechanics/enterprise/thread.md#dead-threads-that-reappear`).
     pub fn live(&self, reappearing: bool) -> Option<&Turn> {
         if self.closed || (!reappearing && self.last().dead) {
@@ -78,29 +78,29 @@ impl Thread {
         self.turns.iter().rev().find(|turn| !turn.dead)
     }
 
-    /// The player's newest offerings.
+    /// Returns the player's newest offerings.
     pub fn offerings(&self) -> &[Offering] {
         let offer = self.turns.iter().rev().find(|turn| turn.sender == Sender::Agent);
         offer.map_or(&[], |turn| &turn.offerings)
     }
 
-    /// Turns of the player.
+    /// Returns the number of turns by the player.
     pub fn agent_turns(&self) -> u32 {
         self.turns.iter().filter(|turn| turn.sender == Sender::Agent).count() as u32
     }
 
-    /// Day of the customer's newest turn.
+    /// Returns the day of the customer's newest turn.
     pub fn customer_day(&self) -> Option<u32> {
         let customer = self.turns.iter().filter(|turn| turn.sender == Sender::Customer);
         customer.map(|turn| turn.day).max()
     }
 
-    /// Price that the company named last.
+    /// Returns the price that the enterprise named last.
     pub fn asked(&self) -> Option<f64> {
         self.turns.iter().rev().find_map(|turn| turn.asked)
     }
 
-    /// Whether nothing can come of it any more after a day: it is closed, or dead and never fires again.
+    /// Returns whether the thread has no further effect after a day: it is closed, or dead and cannot trigger again.
     pub(super) fn is_over(&self, day: u32, reappearing: bool) -> bool {
         if self.closed {
             return true;
@@ -116,7 +116,7 @@ impl Thread {
 mod tests {
     use super::*;
 
-    /// A thread from letters: s system, a agent, c customer; a capital one died.
+    /// Builds a thread from letters: s system, a agent, c customer; an uppercase letter is dead.
     fn thread(letters: &str) -> Thread {
         let turn = |(number, letter): (usize, char)| Turn {
             message: number as u32,

@@ -1,4 +1,4 @@
-//! What subscribers begin by themselves: a threat to leave, or the wish for another plan.
+//! Threads that subscribers open: a threat to leave, or a request for another plan.
 
 use std::collections::BTreeSet;
 
@@ -10,7 +10,7 @@ use crate::identifiers::{Group, Plan};
 use crate::params::EnterpriseParams as Sales;
 use crate::random::Part;
 
-/// A thread that a subscriber begins.
+/// The reason for which a subscriber opens a thread.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Wish {
     /// It threatens to leave.
@@ -19,13 +19,13 @@ enum Wish {
     Switch { from: Plan, to: Plan },
 }
 
-/// Gain in surplus as a share of the present one.
+/// Returns the gain in surplus as a share of the current surplus.
 pub fn improvement(best: f64, present: f64, sales: &Sales) -> f64 {
     (best - present) / present.abs().max(sales.plan_change_improvement_denominator_min)
 }
 
 impl Step<'_> {
-    /// Lets every subscriber without a thread this morning look at what it pays.
+    /// Opens threads for subscribers that had none this morning.
     pub(super) fn trigger(&mut self, busy: &BTreeSet<u32>) {
         let mut wishes: Vec<(u32, u32, Wish)> = Vec::new();
         for (group, block) in self.customers.blocks().filter(|(group, _)| group.is_enterprise()) {
@@ -63,7 +63,6 @@ impl Step<'_> {
 }
 
 impl Negotiation<'_> {
-    /// What a subscriber wants today, if anything.
     fn wish(&self, group: Group, row: &Subscriber) -> Option<Wish> {
         let sales = &self.day.params.enterprise;
         let (quality, curve) = (self.lived_quality(group, row), self.lived_curve(group, row));
@@ -99,7 +98,7 @@ mod tests {
     use super::*;
     use crate::identifiers::ByPlan;
 
-    /// Quality and surplus of the plan a subscriber is on; K on day `day`.
+    /// Quality and surplus of the subscriber's current plan.
     fn present(kit: &Kit, row: &Subscriber) -> (f64, f64) {
         kit.with(|day| {
             let (quality, curve) = (day.lived_quality(kit.group, row), day.lived_curve(kit.group, row));
@@ -136,8 +135,8 @@ mod tests {
     #[test]
     fn lived_quality_and_surplus_decide_about_a_threat() {
         let near = |(quality, surplus): (f64, f64), expected: (f64, f64)| {
-            assert!((quality - expected.0).abs() < 1e-10, "{quality} instead of {}", expected.0);
-            assert!((surplus - expected.1).abs() < 1e-10, "{surplus} instead of {}", expected.1);
+            assert!((quality - expected.0).abs() < 1e-10, "got {quality}, expected {}", expected.0);
+            assert!((surplus - expected.1).abs() < 1e-10, "got {surplus}, expected {}", expected.1);
         };
         let day4 = kit(4);
         let content = subscriber(&day4, Plan::B, 35.0, 0.6, 4500.0);
@@ -166,8 +165,8 @@ mod tests {
                 Subscriber { effective_price: charged, ..subscriber(&kit, Plan::B, agreed, 0.6, 5500.0) };
             kit.with(|day| day.wish(kit.group, &row))
         };
-        assert_eq!(wish(45.0, 5.0), Some(Wish::Leave), "a discount does not make a bad deal a good one");
-        assert_eq!(wish(30.0, 90.0), None, "what is charged by mistake is no reason to leave");
+        assert_eq!(wish(45.0, 5.0), Some(Wish::Leave), "a discount does not change the surplus of a deal");
+        assert_eq!(wish(30.0, 90.0), None, "the charged price does not count");
     }
 
     #[test]
@@ -191,7 +190,7 @@ mod tests {
             assert!((own_here - here).abs() < 1e-10 && (own_there - there).abs() < 1e-10);
             assert!((improvement(own_there, own_here, &sales) - gain).abs() < 1e-8);
         }
-        // A list price that gains too little draws nothing, however often.
+        // A list price with too little gain makes no random draw.
         kit.morning.core.prices = ByPlan([22.0, 500.0, 500.0]);
         let row = on_b(&kit, 36.0);
         assert!((surplus_on(&kit, &row, Plan::A, 22.0) - 0.0500675475).abs() < 1e-10);

@@ -1,4 +1,4 @@
-//! The company and its environment: settings, service, research, notifications.
+//! Facts about the company and its environment: settings, service, research, notifications.
 
 use super::economy::Reading;
 use super::research::{Project, Study};
@@ -13,13 +13,13 @@ canonical! {
 /// Service health of a day.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ServiceDay {
-    /// Units used by everybody.
+    /// Units used by all customers.
     pub total_usage: u64,
-    /// Usage above capacity, 0 when there was room.
+    /// Usage above capacity as a share of capacity, 0 if capacity sufficed.
     pub overload: f64,
     /// Whether there was an outage.
     pub outage: bool,
-    /// Its length in minutes: 0, 10, 30 or 90.
+    /// Downtime in minutes: 0, 10, 30 or 90.
     pub downtime_minutes: u32,
     /// Latency in milliseconds.
     pub p95_ms: f64,
@@ -27,12 +27,12 @@ pub struct ServiceDay {
     pub error_rate: f64,
     /// Capacity tier in force.
     pub capacity_tier: u8,
-    /// Its units a day.
+    /// Units a day of that tier.
     pub capacity_units: u32,
 }
 
 impl ServiceDay {
-    /// A day without load or trouble.
+    /// Returns a day without load or problems.
     pub fn quiet() -> ServiceDay {
         ServiceDay {
             total_usage: 0,
@@ -50,7 +50,7 @@ impl ServiceDay {
 /// An R&D project that started or finished.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ResearchChange {
-    /// Paid and begun.
+    /// Paid for and started.
     Started(Project),
     /// Finished today.
     Completed(Project),
@@ -75,44 +75,44 @@ impl Restore for ResearchChange {
     }
 }
 
-/// A notification for the inbox; `voice` words it.
+/// A notification for the inbox; the `voice` crate writes its text.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Notice {
-    /// A company asks for an offer.
+    /// An enterprise requests an offer.
     EnterpriseLead,
-    /// A company got no answer for so many days.
+    /// A lead was lost because the player did not answer for this many days.
     LeadLostByTimeout {
         /// Days since its last turn.
         days: u32,
     },
-    /// A lead that was lost before is reported once more, as every day: its thread fires for ever.
+    /// A lead that was lost before is reported again, every day, because its thread keeps triggering.
     LeadLossRepeated {
-        /// Days since the turn that the thread goes by.
+        /// Days since the active turn of the thread.
         days: u32,
-        /// The company.
+        /// Customer number of the enterprise.
         customer: u32,
-        /// What it was lost by.
+        /// Why it was lost.
         cause: LossCause,
-        /// Day of the message that got no answer.
+        /// Day of the unanswered message.
         message_day: u32,
     },
-    /// A company that asked for an offer fell silent.
+    /// An enterprise that requested an offer fell silent.
     LeadSilent,
-    /// A company names a price.
+    /// An enterprise made a counter-offer.
     CounterOffer {
-        /// The company.
+        /// Customer number of the enterprise.
         customer: u32,
     },
     /// A customer threatens to leave.
     ChurnThreat {
-        /// The company.
+        /// Customer number of the enterprise.
         customer: u32,
     },
-    /// A customer asks for another plan.
+    /// A customer requests another plan.
     PlanWish {
-        /// The company.
+        /// Customer number of the enterprise.
         customer: u32,
-        /// For a higher one.
+        /// Whether the requested plan is higher.
         upgrade: bool,
     },
     /// A deal was closed at this price, dollars a month and seat.
@@ -124,12 +124,12 @@ pub enum Notice {
     ResearchComplete {
         /// Tier, 1..=20.
         tier: u8,
-        /// Number of the start of the tier.
+        /// Number of the project within the tier, from 1.
         number: u32,
     },
     /// A reading of the economy was published.
     EconomyUpdate(Reading),
-    /// Market research found a group.
+    /// Market research discovered a group.
     GroupFound {
         /// The group.
         group: Group,
@@ -143,20 +143,20 @@ pub enum Notice {
         /// Largest relative error of its estimates.
         noise: f64,
     },
-    /// A post of the player was read.
+    /// A post of the player was seen and judged.
     OwnPostSeen(Reaction),
 }
 
-/// What a lead was lost by.
+/// Why a lead was lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LossCause {
-    /// The company did not answer the player's offer.
+    /// The enterprise did not answer the player's offer.
     Silence,
-    /// The player did not answer the company's message.
+    /// The player did not answer the enterprise's message.
     Unanswered,
 }
 
-/// How the public took a post of the player.
+/// The public reaction to a post of the player.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reaction {
     /// Number of the post.
@@ -165,12 +165,12 @@ pub struct Reaction {
     pub views: u64,
     /// Mean reaction of the groups that judged it, -1..=1.
     pub mean: f64,
-    /// The strongest reactions, the strongest first.
+    /// The strongest reactions, in descending order.
     pub strongest: [Option<(Group, f64)>; 3],
 }
 
 impl Notice {
-    /// Type as the tables write it.
+    /// Type as stored in tables.
     pub fn kind(&self) -> &'static str {
         match self {
             Notice::EnterpriseLead
@@ -194,7 +194,7 @@ impl Canonical for Notice {
     fn feed(&self, hasher: &mut CanonicalHasher) {
         match *self {
             Notice::EnterpriseLead => 0u8.feed(hasher),
-            // Recorded runs do not tell one from the other.
+            // Trajectories do not distinguish the two causes.
             Notice::LeadLostByTimeout { days } | Notice::LeadLossRepeated { days, .. } => {
                 (1u8, days).feed(hasher)
             }

@@ -1,4 +1,4 @@
-//! Customers: how they come, what they agree on, what they use, how they leave.
+//! Facts about customers: arrival, terms, usage, departure.
 
 use crate::canonical::{canonical, canonical_codes};
 use crate::customers::persona::PersonaPicks;
@@ -20,7 +20,7 @@ canonical_codes! {
     EndCause { Involuntary, Quality, Price, LeadTimeout, LeadSilent, LeadRejected, ExtendedIssue, QualityChange, QuotaChange, PriceSensitivity }
 }
 
-/// How a customer came.
+/// How a customer found the company.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Source {
@@ -36,12 +36,12 @@ pub enum Source {
     ReferralProgram,
     /// Word of mouth.
     Network,
-    /// Of its own accord; foreseen, but it cannot occur.
+    /// Without a channel; reserved, does not occur.
     Organic,
 }
 
 impl Source {
-    /// All sources: the channels in channel order, then the two without a price.
+    /// All sources: the channels in channel order, then the two unpaid ones.
     pub const ALL: [Source; 7] = [
         Source::SocialMedia,
         Source::SearchAds,
@@ -52,17 +52,17 @@ impl Source {
         Source::Organic,
     ];
 
-    /// The source that is a channel.
+    /// Returns the source of a channel.
     pub fn of_channel(channel: Channel) -> Source {
         Source::ALL[channel.index()]
     }
 
-    /// The channel, if it is one.
+    /// Returns the channel of a paid source.
     pub fn channel(self) -> Option<Channel> {
         Channel::at(self as usize)
     }
 
-    /// Word as the tables write it.
+    /// Identifier as stored in tables.
     pub fn id(self) -> &'static str {
         match self.channel() {
             Some(channel) => channel.id(),
@@ -94,9 +94,9 @@ pub struct Arrival {
     pub group: Group,
     /// Running number within the group.
     pub n: u32,
-    /// How it came.
+    /// How it found the company.
     pub source: Source,
-    /// Picks of its profile.
+    /// Profile attributes.
     pub persona: PersonaPicks,
     /// Mean demand, for the usage label of the profile.
     pub usage_demand: f64,
@@ -113,7 +113,7 @@ pub struct SubscriptionOpened {
     pub subscription: u32,
     /// Customer number.
     pub customer: u32,
-    /// Plan; none while a company negotiates.
+    /// Plan; `None` while an enterprise negotiates.
     pub plan: Option<Plan>,
     /// Subscribed, lost or lead.
     pub status: SubscriptionStatus,
@@ -131,7 +131,7 @@ pub struct SubscriptionOpened {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum SubscriptionStatus {
-    /// A company that negotiates.
+    /// An enterprise that negotiates.
     Lead,
     /// Active.
     Subscribed,
@@ -142,13 +142,13 @@ pub enum SubscriptionStatus {
 }
 
 impl SubscriptionStatus {
-    /// Word as the tables write it.
+    /// Identifier as stored in tables.
     pub fn id(self) -> &'static str {
         ["lead", "subscribed", "cancelled", "lost"][self as usize]
     }
 }
 
-/// Terms of a subscription after a bill, a switch of plan or a deal.
+/// Terms of a subscription after a bill, a plan switch or a deal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TermsChanged {
     /// Subscription number.
@@ -165,33 +165,33 @@ pub struct TermsChanged {
     pub effective_price: f64,
     /// Whole seats.
     pub seats: u32,
-    /// Whether the first bill was made.
+    /// Whether the first bill was issued.
     pub billed_once: bool,
 }
 
-/// How a subscription came to its end.
+/// Why a subscription ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum EndCause {
-    /// The payment failed for good.
+    /// A payment failed permanently.
     Involuntary,
     /// No plan was acceptable, and satisfaction was negative.
     Quality,
     /// No plan was acceptable at its price.
     Price,
-    /// A company's lead waited too long for an answer.
+    /// An enterprise lead waited too long for an answer.
     LeadTimeout,
-    /// A company's lead fell silent.
+    /// An enterprise lead fell silent.
     LeadSilent,
-    /// A company's lead was turned away.
+    /// The player rejected an enterprise lead.
     LeadRejected,
-    /// A company left: an issue stayed open for too long.
+    /// An enterprise left because an issue stayed open for too long.
     ExtendedIssue,
-    /// A company left: the product is not good enough.
+    /// An enterprise left because of low quality.
     QualityChange,
-    /// A company left: it needs more than its quota.
+    /// An enterprise left because it needs more than its quota.
     QuotaChange,
-    /// A company left: the price.
+    /// An enterprise left because of the price.
     PriceSensitivity,
 }
 
@@ -206,15 +206,15 @@ pub struct SubscriptionEnded {
     pub group: Group,
     /// Whole seats.
     pub seats: u32,
-    /// End day that is recorded.
+    /// Recorded end day.
     pub day: u32,
     /// Cancelled or lost.
     pub status: SubscriptionStatus,
-    /// Why, known to nobody but the simulator.
+    /// The cause, known only to the simulator.
     pub cause: EndCause,
 }
 
-/// Usage of a run of customers of one group, in ascending order of their numbers.
+/// Usage of consecutive customers of one group, in ascending order of their numbers.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct UsageRows {
     /// Customer numbers.
@@ -228,7 +228,7 @@ pub struct UsageRows {
 pub struct IssueOpened {
     /// Running number of the issue.
     pub issue: u32,
-    /// Whose.
+    /// Number of the customer.
     pub customer: u32,
     /// The customer's group.
     pub group: Group,
@@ -237,7 +237,7 @@ pub struct IssueOpened {
 /// Ad revenue of one subscriber.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AdsRevenueRow {
-    /// Who saw the ads.
+    /// Number of the customer who saw the ads.
     pub customer: u32,
     /// The customer's group.
     pub group: Group,

@@ -14,11 +14,11 @@ canonical_codes! {
 /// A reading of the index.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reading {
-    /// Day on which it was measured: the last of the days it averages.
+    /// Last of the days whose values the reading averages.
     pub measured_day: u32,
     /// Average, one decimal.
     pub value: f64,
-    /// Change against the reading before, one decimal.
+    /// Change since the previous reading, one decimal.
     pub change: f64,
     /// Label of the value.
     pub trend: Trend,
@@ -44,7 +44,7 @@ pub enum Trend {
 }
 
 impl Trend {
-    /// Label of an index value.
+    /// Returns the label of an index value.
     pub fn of(pmi: f64, law: &MacroEconomy) -> Trend {
         match pmi {
             _ if pmi >= law.trend_strong_expansion_min => Trend::StrongExpansion,
@@ -55,7 +55,7 @@ impl Trend {
         }
     }
 
-    /// Word as the tables write it.
+    /// Identifier as stored in tables.
     pub fn id(self) -> &'static str {
         ["strong_expansion", "expansion", "neutral", "contraction", "severe_contraction"][self as usize]
     }
@@ -77,7 +77,7 @@ pub enum Phase {
 }
 
 impl Phase {
-    /// Phase of a reading by its value and change.
+    /// Returns the phase for the value and change of a reading.
     pub fn of(value: f64, change: f64, law: &MacroEconomy) -> Phase {
         if value >= law.phase_peak_min_pmi && change <= 0.0 {
             Phase::Peak
@@ -90,7 +90,7 @@ impl Phase {
         }
     }
 
-    /// Word as the tables write it.
+    /// Identifier as stored in tables.
     pub fn id(self) -> &'static str {
         ["peak", "declining", "trough", "recovering"][self as usize]
     }

@@ -1,4 +1,4 @@
-//! Figures of a day.
+//! Figures of one day.
 
 use crate::identifiers::{ByGroup, ByPlan};
 
@@ -21,19 +21,19 @@ pub struct DayFigures {
     pub p95_ms: f64,
     /// Share of failed requests.
     pub error_rate: f64,
-    /// All leads, those that came to nothing included.
+    /// All leads, including lost ones.
     pub new_leads: u32,
     /// Leads of individuals.
     pub new_individual_leads: u32,
-    /// Leads of companies that opened a thread.
+    /// Leads of enterprises that opened a thread.
     pub new_enterprise_leads: u32,
     /// Individuals who signed up.
     pub new_individual_subscribers: u32,
-    /// Seats of companies that signed today.
+    /// Seats of enterprises that signed today.
     pub new_enterprise_seats: u32,
-    /// Cancellations of individuals, involuntary ones included.
+    /// Cancellations of individuals, including involuntary ones.
     pub cancellations: u32,
-    /// Switches to a dearer plan.
+    /// Switches to a more expensive plan.
     pub upgrades: u32,
     /// Switches to a cheaper plan.
     pub downgrades: u32,
@@ -47,6 +47,6 @@ pub struct DayFigures {
     pub mrr: f64,
     /// Active subscriptions of individuals.
     pub individual_subscribers: u32,
-    /// Seats of active companies.
+    /// Seats of active enterprises.
     pub enterprise_seats: u32,
 }

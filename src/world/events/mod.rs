@@ -1,8 +1,8 @@
-//! Facts of a day: what happened, as plain data, for whoever records it.
+//! Facts of a day: what happened, as plain data for recording.
 //!
-//! Mechanisms push facts; `database` turns them into rows and `voice` some of them into words. A fact holds
-//! codes and numbers, never a text, and nothing in it is read back by the world. Order within a list is the
-//! order in which things happened.
+//! Mechanisms append facts; `database` turns them into rows and `voice` turns some of them into text. A fact
+//! holds codes and numbers, never text (except for posts of the player), and the world never reads it. Lists
+//! are in the order of the events.
 
 mod company;
 mod customers;
@@ -32,12 +32,12 @@ use super::canonical::canonical;
 use super::identifiers::Group;
 use super::settings::SettingsChange;
 
-/// Everything that happened on one day, or through the tools after it.
+/// Everything that happened on one day or in the tool calls after it.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Facts {
     /// The day all facts belong to.
     pub day: u32,
-    /// Settings that were changed, complete after the change.
+    /// Changed settings, complete after the change.
     pub settings: Vec<SettingsChange>,
     /// Usage of every active subscription, in pieces.
     pub usage: Vec<UsageRows>,
@@ -45,25 +45,25 @@ pub struct Facts {
     pub service: Option<ServiceDay>,
     /// R&D projects that started or finished.
     pub research: Vec<ResearchChange>,
-    /// Attempts to find a group.
+    /// Attempts to discover a group.
     pub attempts: Vec<Attempt>,
-    /// Groups whose knowledge changed, as it is now.
+    /// Groups with changed knowledge, and their new knowledge.
     pub knowledge: Vec<(Group, Knowledge)>,
     /// Readings of the economy that were published.
     pub readings: Vec<Reading>,
     /// Issues that were solved, by number.
     pub issues_resolved: Vec<u32>,
-    /// Whether the open issues aged by a day.
+    /// Whether open issues aged by one day.
     pub issues_aged: bool,
     /// Issues that were opened.
     pub issues_opened: Vec<IssueOpened>,
     /// Subscriptions that ended.
     pub endings: Vec<SubscriptionEnded>,
-    /// Subscriptions whose terms changed; the last one of a subscription holds.
+    /// Subscriptions with changed terms; the last entry of a subscription applies.
     pub changes: Vec<TermsChanged>,
     /// Turns of enterprise threads.
     pub turns: Vec<ThreadTurn>,
-    /// Deals with companies.
+    /// Deals with enterprises.
     pub deals: Vec<DealClosed>,
     /// Leads by paid channel and group.
     pub channel_leads: Vec<ChannelLeads>,
@@ -77,11 +77,11 @@ pub struct Facts {
     pub ledger: Vec<LedgerEntry>,
     /// Subscribers who earned ad revenue.
     pub ads_revenue: Vec<AdsRevenueRow>,
-    /// What others wrote on social media, in the order of their numbers.
+    /// Posts of others, in ascending order of their numbers.
     pub posts: Vec<Post>,
-    /// What the player wrote there.
+    /// Posts of the player.
     pub own_posts: Vec<OwnPostMade>,
-    /// Posts of the player that were read and judged.
+    /// Posts of the player that were seen and judged.
     pub own_posts_seen: Vec<OwnPostSeen>,
     /// Notifications.
     pub notices: Vec<Notice>,
@@ -96,7 +96,7 @@ canonical! {
 }
 
 impl Facts {
-    /// Forgets everything and starts a day, keeping the memory.
+    /// Clears all facts and starts a day; allocated memory is kept.
     pub fn begin(&mut self, day: u32) {
         let Facts {
             day: own_day,

@@ -1,4 +1,4 @@
-//! Movements of cash.
+//! Facts about cash.
 
 use super::research::Study;
 use crate::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, canonical, canonical_codes};
@@ -17,17 +17,17 @@ canonical_codes! {
 /// A payment of a subscriber.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Payment {
-    /// Who paid.
+    /// Number of the customer who paid.
     pub customer: u32,
     /// Dollars.
     pub amount: f64,
 }
 
-/// Category of a movement of cash (`docs/mechanics/money.md`).
+/// Category of a cash movement (`docs/mechanics/money.md`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Category {
-    /// Seed money.
+    /// Initial funding.
     InitialFunding,
     /// Cost of a lead.
     LeadAcquisitionCost,
@@ -45,7 +45,7 @@ pub enum Category {
     Advertising,
     /// In-app ads of the day.
     AdRevenue,
-    /// An attempt to find a group.
+    /// An attempt to discover a group.
     MarketResearch,
     /// A study of a group.
     GroupResearch,
@@ -70,7 +70,7 @@ impl Category {
         Category::ResearchProject,
     ];
 
-    /// Word as the tables write it.
+    /// Identifier as stored in tables.
     pub fn id(self) -> &'static str {
         match self {
             Category::InitialFunding => "initial_funding",
@@ -89,25 +89,25 @@ impl Category {
     }
 }
 
-/// A movement of cash that is no payment of a subscriber and no lead cost.
+/// A cash movement other than a payment of a subscriber or a lead cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LedgerEntry {
     /// Category.
     pub category: Category,
     /// Dollars; costs are negative.
     pub amount: f64,
-    /// What the note says.
+    /// Content of the note.
     pub note: LedgerNote,
 }
 
-/// What the note of a movement says.
+/// Content of the note of a cash movement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LedgerNote {
-    /// What the category says, for everybody.
+    /// The general text of the category.
     General,
-    /// The part aimed at groups, plans or customers.
+    /// The part targeted at groups, plans or customers.
     Targeted,
-    /// Ad revenue from so many active subscribers.
+    /// Ad revenue from this many active subscribers.
     Subscribers(u32),
     /// An R&D project: tier and number.
     Project(u8, u32),

@@ -1,4 +1,4 @@
-//! Social media: what is written in public. Codes and numbers only; `voice` finds the words.
+//! Facts about posts as codes and numbers; the `voice` crate writes the text.
 
 use super::economy::{Reading, Trend};
 use crate::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, canonical, canonical_codes};
@@ -21,18 +21,18 @@ canonical_codes! {
     Severity { Minor, Moderate, Major, Transformative }
 }
 
-/// A post of somebody else than the player.
+/// A post by anyone except the player.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Post {
     /// Running number.
     pub post: u32,
-    /// Who wrote it; the market observer where nobody is named.
+    /// The author, or `None` for the market observer.
     pub author: Option<PostAuthor>,
     /// Its tone.
     pub sentiment: Sentiment,
-    /// How far it carries, hidden.
+    /// Engagement, hidden from the player.
     pub engagement: Engagement,
-    /// What it is about.
+    /// The subject.
     pub matter: Matter,
 }
 
@@ -42,13 +42,13 @@ pub struct Post {
 pub enum Sentiment {
     /// Praise.
     Positive,
-    /// Neither.
+    /// Neither positive nor negative.
     Neutral,
     /// Complaint.
     Negative,
 }
 
-/// How far a post carries; hidden, and without effect on the world.
+/// Engagement of a post; hidden, and without effect on the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Engagement {
     /// Likes.
@@ -59,7 +59,7 @@ pub struct Engagement {
     pub virality: f64,
 }
 
-/// A customer who writes.
+/// A customer as an author.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PostAuthor {
     /// Customer number.
@@ -68,46 +68,46 @@ pub struct PostAuthor {
     pub group: Group,
     /// Running number within the group.
     pub n: u32,
-    /// Picks of the profile.
+    /// Profile attributes.
     pub persona: PersonaPicks,
-    /// Whole seats of a company, 0 for individuals.
+    /// Whole seats of an enterprise, 0 for individuals.
     pub company: u32,
 }
 
-/// What a post is about.
+/// The subject of a post.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Matter {
-    /// A customer's life with the product.
+    /// A customer's experience with the product.
     Opinion(Opinion),
     /// A reading of the economy was published.
     Reading(Reading),
-    /// The mood of the economy.
+    /// The state of the economy.
     Economy {
         /// Label of today's index.
         trend: Trend,
         /// Today's index.
         pmi: f64,
-        /// From whose point of view.
+        /// Number of the point of view.
         perspective: u8,
     },
-    /// A rival has moved.
+    /// An event of a competitor.
     Rival {
-        /// Which one.
+        /// Number of the competitor.
         name: u8,
-        /// From whose point of view.
+        /// Number of the point of view.
         perspective: u8,
-        /// How large the author thinks it is.
+        /// Estimated severity.
         severity: Severity,
-        /// The author's estimate of the gain in quality.
+        /// Estimated gain in quality.
         estimate: f64,
     },
     /// A comment on a post of the player.
     Comment {
         /// The player's post.
         own_post: u32,
-        /// Group whose mood it speaks for.
+        /// Group that the comment speaks for.
         group: Group,
-        /// How that group took the post, -1..=1.
+        /// Reaction of that group to the post, -1..=1.
         effect: f64,
     },
 }
@@ -148,18 +148,18 @@ impl Restore for Matter {
     }
 }
 
-/// What a customer has in mind when writing.
+/// The experience that a customer writes about.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Opinion {
     /// Why the post is written.
     pub cause: Cause,
-    /// What went wrong today for this customer.
+    /// Problems of this customer today.
     pub troubles: Troubles,
-    /// What weighs most in the customer's mind besides.
+    /// The theme that matters most to the customer.
     pub theme: Theme,
     /// Days subscribed.
     pub days_subscribed: u32,
-    /// Plan; none once a company is lost.
+    /// Plan; `None` after an enterprise is lost.
     pub plan: Option<Plan>,
     /// Price in force, dollars a month and seat.
     pub price: f64,
@@ -171,7 +171,7 @@ pub struct Opinion {
     pub downtime_minutes: u32,
 }
 
-/// Why a customer writes, the first that holds.
+/// The reason for a post, the first that applies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cause {
     /// The service was slow.
@@ -180,21 +180,21 @@ pub enum Cause {
     Outage,
     /// A support issue is open.
     Issue,
-    /// The quota did not cover what was needed.
+    /// The quota did not cover the demand.
     Quota,
     /// Satisfaction rose.
     Improved,
     /// Satisfaction fell.
     Declined,
-    /// Nothing in particular.
+    /// No particular reason.
     General,
-    /// No plan was worth its price any more.
+    /// No plan was worth its price.
     Cancelled,
-    /// A company left after a negotiation.
+    /// An enterprise left after a negotiation.
     Lost {
-        /// How the negotiation began.
+        /// How the negotiation started.
         thread: ThreadKind,
-        /// Nobody answered the company; otherwise it fell silent itself.
+        /// Whether the player did not answer; otherwise the enterprise fell silent.
         unanswered: bool,
     },
 }
@@ -239,7 +239,7 @@ impl Restore for Cause {
     }
 }
 
-/// What went wrong for a customer today.
+/// Problems of a customer today.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Troubles {
     /// The service was slow.
@@ -253,34 +253,34 @@ pub struct Troubles {
 }
 
 impl Troubles {
-    /// How many there are.
+    /// Returns the number of problems.
     #[inline]
     pub fn count(&self) -> u32 {
         [self.overload, self.outage, self.issue, self.quota].into_iter().map(u32::from).sum()
     }
 }
 
-/// What weighs in a customer's mind: for the unhappy what they lack, for the happy what they value.
+/// What matters to a customer: what an unhappy one lacks, or what a happy one values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Theme {
-    /// What it costs, and what one gets for it.
+    /// Price and value for money.
     Price,
-    /// How good the answers are.
+    /// Quality of the answers.
     Quality,
-    /// What rivals offer by now.
+    /// Offers of competitors.
     Rivals,
-    /// Whether it runs, and how fast.
+    /// Availability and speed.
     Service,
-    /// How support treats them.
+    /// Treatment by support.
     Support,
     /// The quota.
     Limits,
     /// Ads inside the product.
     Ads,
-    /// That it has become better lately.
+    /// Recent improvements.
     Progress,
-    /// Being used to it.
+    /// Familiarity with the product.
     Habit,
 }
 
@@ -291,14 +291,14 @@ pub struct OwnPostMade {
     pub post: u32,
     /// Its text.
     pub content: String,
-    /// The post it answers.
+    /// Number of the post that it replies to.
     pub reply_to: Option<u32>,
 }
 
-/// A post of the player was read and judged.
+/// A post of the player that was seen and judged.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OwnPostSeen {
-    /// Its number.
+    /// Number of the post.
     pub post: u32,
     /// How often it was seen.
     pub views: u64,
@@ -306,7 +306,7 @@ pub struct OwnPostSeen {
     pub comments: Vec<u32>,
 }
 
-/// How large an event is in the eyes of the press.
+/// Severity of an event as the press sees it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// Below 0.03.
@@ -320,7 +320,7 @@ pub enum Severity {
 }
 
 impl Severity {
-    /// Word as posts and tables write it.
+    /// Identifier as used in posts and tables.
     pub fn id(self) -> &'static str {
         ["minor", "moderate", "major", "transformative"][self as usize]
     }

@@ -1,4 +1,4 @@
-//! Negotiations with companies.
+//! Facts about negotiations with enterprises.
 
 use crate::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, canonical, canonical_codes};
 use crate::customers::persona::PersonaPicks;
@@ -14,13 +14,13 @@ canonical_codes! {
     Sender { System, Customer, Agent }
 }
 
-/// How an enterprise thread began.
+/// How an enterprise thread started.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum ThreadKind {
-    /// A company asks for an offer.
+    /// An enterprise requests an offer.
     NewLead,
-    /// A customer asks for the price of another plan.
+    /// A customer requests the price of another plan.
     PlanChange,
     /// A customer threatens to leave.
     ChurnPrevention,
@@ -33,12 +33,12 @@ impl ThreadKind {
     pub const ALL: [ThreadKind; 4] =
         [ThreadKind::NewLead, ThreadKind::PlanChange, ThreadKind::ChurnPrevention, ThreadKind::Renegotiation];
 
-    /// The kind with this word; case counts.
+    /// Returns the kind with this identifier; case-sensitive.
     pub fn parse(id: &str) -> Option<ThreadKind> {
         ThreadKind::ALL.into_iter().find(|kind| kind.id() == id)
     }
 
-    /// Word as the tables write it.
+    /// Identifier as stored in tables.
     pub fn id(self) -> &'static str {
         match self {
             ThreadKind::NewLead => "new_lead",
@@ -49,20 +49,20 @@ impl ThreadKind {
     }
 }
 
-/// Who wrote a turn.
+/// The sender of a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Sender {
-    /// The market: opening and closing turns.
+    /// The system: opening and closing turns.
     System,
-    /// The company.
+    /// The enterprise.
     Customer,
     /// The player.
     Agent,
 }
 
 impl Sender {
-    /// Word as the tables write it.
+    /// Identifier as stored in tables.
     pub fn id(self) -> &'static str {
         match self {
             Sender::System => "system",
@@ -81,34 +81,34 @@ pub struct Offering {
     pub price: f64,
 }
 
-/// What a turn says.
+/// The content of a turn.
 #[derive(Debug, Clone, PartialEq)]
 pub enum TurnContent {
-    /// Nothing: the turn only begins a thread.
+    /// Nothing: the turn only opens a thread.
     Opening,
     /// The player's offerings, one to three.
     Offer(Vec<Offering>),
     /// The player ends the thread.
     Rejection,
-    /// A customer's price no longer fits what it gets.
+    /// A customer's price is too high for the quality it gets.
     Threat,
-    /// A customer asks for a price of another plan.
+    /// A customer requests the price of another plan.
     PlanWish {
-        /// The plan it is on.
+        /// The current plan.
         from: Plan,
-        /// The plan it asks for.
+        /// The requested plan.
         to: Plan,
     },
-    /// A company names the price it would pay.
+    /// An enterprise names the price it would pay.
     Counter {
-        /// What it would pay, and for which plan.
+        /// The named price and its plan.
         asked: Offering,
-        /// Price of the offering it answers.
+        /// Price of the offering that it answers.
         offered: f64,
     },
-    /// A company takes an offering.
+    /// An enterprise accepts an offering.
     Acceptance(Offering),
-    /// The market records a deal.
+    /// The system records a deal.
     Closing(Offering),
 }
 
@@ -153,32 +153,32 @@ pub struct ThreadTurn {
     pub message: u32,
     /// Running number of the thread.
     pub thread: u32,
-    /// The company.
+    /// Customer number of the enterprise.
     pub customer: u32,
     /// Its group.
     pub group: Group,
-    /// Picks of its profile, for its words.
+    /// Profile attributes for the wording.
     pub persona: PersonaPicks,
-    /// How the thread began.
+    /// How the thread started.
     pub kind: ThreadKind,
     /// Number of the turn within the thread, from 0.
     pub number: u32,
-    /// Who wrote it.
+    /// Sender of the turn.
     pub sender: Sender,
     /// Whole seats; 1 on turns that the player adds to a thread.
     pub seats: u32,
-    /// What it says.
+    /// The content.
     pub content: TurnContent,
 }
 
-/// A deal that was closed; the terms of the subscription follow as changed terms.
+/// A closed deal; the new terms of the subscription follow as changed terms.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DealClosed {
-    /// The company.
+    /// Customer number of the enterprise.
     pub customer: u32,
-    /// How the thread began.
+    /// How the thread started.
     pub kind: ThreadKind,
-    /// A lead became a subscriber by it.
+    /// Whether a lead became a subscriber.
     pub activated: bool,
     /// Plan.
     pub plan: Plan,
@@ -190,6 +190,6 @@ pub struct DealClosed {
     pub days: u32,
     /// Whole seats.
     pub seats: u32,
-    /// Day on which the month ends that was agreed on; none if nobody was left to agree.
+    /// Last day of the agreed month; `None` if the enterprise was already lost.
     pub contract_end_day: Option<u32>,
 }

@@ -1,4 +1,4 @@
-//! The leads of a day become customers, prospects, or nothing (docs/mechanics/market/arrivals.md).
+//! Turns the leads of a day into customers, prospects, or lost leads (docs/mechanics/market/arrivals.md).
 
 use rayon::prelude::*;
 
@@ -22,30 +22,30 @@ use crate::random::{Part, Stream, Word};
 use crate::retention::renewal::ongoing_discount;
 use crate::retention::required_of;
 
-/// What came of the leads of a day.
+/// Outcomes of the leads of a day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LeadCounts {
     /// All leads.
     pub all: u32,
     /// Individuals.
     pub individuals: u32,
-    /// Companies that opened a thread.
+    /// Enterprises that opened a thread.
     pub companies: u32,
     /// Individuals who signed up.
     pub subscribed: u32,
 }
 
-/// What the arrivals of a day share.
+/// Shared inputs of the arrivals of a day.
 pub struct Arrivals<'a> {
     /// The day.
     pub day: &'a DayContext<'a>,
-    /// The market, after today's changes.
+    /// The market, including today's changes.
     pub market: &'a Market,
 }
 
 struct Lead {
     traits: Traits,
-    /// The curve with today's expectations, counted once.
+    /// The curve including today's expectations, counted once.
     curve: Curve,
     source: Source,
     outcome: Outcome,
@@ -66,7 +66,7 @@ enum Outcome {
     GatedOut,
 }
 
-/// Number and factors of today's leads, group by group; undiscovered groups bring none.
+/// Returns the factors of today's leads by group; undiscovered groups have none.
 pub fn expect(arrivals: &Arrivals<'_>, subscribers: &ByGroup<u32>) -> ByGroup<LeadFactors> {
     let (market, context) = (arrivals.market, lead_context(arrivals, subscribers));
     ByGroup::from_fn(|group| {
@@ -74,7 +74,7 @@ pub fn expect(arrivals: &Arrivals<'_>, subscribers: &ByGroup<u32>) -> ByGroup<Le
     })
 }
 
-/// What the leads of the day depend on.
+/// Returns the inputs of the lead factors of the day.
 pub fn lead_context<'a>(arrivals: &Arrivals<'a>, subscribers: &'a ByGroup<u32>) -> LeadContext<'a> {
     let &Arrivals { day: &DayContext { morning, settings, params, .. }, market } = arrivals;
     LeadContext {
@@ -87,8 +87,8 @@ pub fn lead_context<'a>(arrivals: &Arrivals<'a>, subscribers: &'a ByGroup<u32>) 
     }
 }
 
-/// Lets the leads of the day come. Subscriptions are numbered subscribers first, then lost leads, then
-/// companies, each in the order of their customers.
+/// Draws and evaluates the leads of the day. Subscriptions are numbered subscribers first, then lost leads,
+/// then enterprises, each in the order of their customers.
 pub fn arrive(
     arrivals: &Arrivals<'_>,
     factors: &ByGroup<LeadFactors>,
@@ -123,10 +123,10 @@ pub fn arrive(
     counts
 }
 
-/// Leads whose streams are opened together: a round number of lanes, and little enough work to share out.
+/// Leads whose streams are opened together: a multiple of the vector lanes, and small enough to distribute
+/// among threads.
 const LEADS_TOGETHER: u32 = 64;
 
-/// Draws and evaluates some leads of one group.
 fn evaluate(arrivals: &Arrivals<'_>, factors: &ByGroup<LeadFactors>, some: &ArrivalRun) -> Vec<Lead> {
     let &Arrivals { day: &DayContext { params, streams, .. }, market } = arrivals;
     let group = some.group;
@@ -159,25 +159,26 @@ fn offers(arrivals: &Arrivals<'_>, group: Group) -> ByPlan<Offer> {
     })
 }
 
-/// How an individual lead looks at what is on offer.
+/// The decision of an individual lead and its inputs.
 #[derive(Debug, Clone, Copy)]
 pub struct FirstLook {
-    /// What is on offer.
+    /// Plans on offer.
     pub offers: ByPlan<Offer>,
     /// Discount for its group and channel, dollars a month.
     pub discount: f64,
-    /// What quotas are compared with.
+    /// Demand that quotas are compared with.
     pub demand: f64,
-    /// Its curve with today's expectations.
+    /// The lead's curve including today's expectations.
     pub curve: Curve,
-    /// The plan that it would take.
+    /// The plan that it prefers.
     pub choice: Choice,
-    /// Factor of the quality as it sees it.
+    /// Factor by which it misjudges quality.
     pub noise: f64,
 }
 
 impl FirstLook {
-    /// A look at offers under a promotion for leads, dollars a month, with a curve and what quotas are compared with.
+    /// Evaluates offers under a discount for leads, dollars a month, with a curve and a demand that quotas
+    /// are compared with.
     #[inline]
     pub fn of(
         offers: &ByPlan<Offer>,
@@ -198,13 +199,13 @@ impl FirstLook {
         }
     }
 
-    /// Whether it signs up.
+    /// Returns whether the lead signs up.
     pub fn accepts(&self, params: &Params) -> bool {
         accepts(&self.choice, self.noise, &self.curve, params)
     }
 }
 
-/// How the n-th customer of a group of individuals looks at the company on the day on which it comes.
+/// Evaluates the n-th customer of a group of individuals on its day of arrival.
 pub fn first_look(
     arrivals: &Arrivals<'_>,
     factors: &ByGroup<LeadFactors>,
@@ -246,7 +247,7 @@ fn curve_and_demand(arrivals: &Arrivals<'_>, group: Group, traits: &Traits) -> (
     curve_and_demand_under(morning.expectations[group], traits, params)
 }
 
-/// The curve of a lead with what the market has added to expectations, and what quotas are compared with.
+/// Returns the curve of a lead including the market's expectations, and the demand that quotas are compared with.
 pub fn curve_and_demand_under(expectation: Expectation, traits: &Traits, params: &Params) -> (Curve, f64) {
     let floor = params.customer_generation.c_max_min;
     let curve = traits.curve.drifted(expectation.quality, expectation.c_max, floor);
@@ -300,8 +301,8 @@ fn record_arrivals(came: &[(ArrivalRun, Vec<Lead>)], counts: &mut LeadCounts, fa
     }
 }
 
-/// One row per funded pair whose group is known and whose channel has a yield; channels in their order, groups
-/// in the order in which the player listed them.
+/// Records one row per funded pair of a known group and a channel with a yield. Channels are in channel
+/// order, groups in the order in which the player listed them.
 fn record_channels(arrivals: &Arrivals<'_>, came: &[(ArrivalRun, Vec<Lead>)], facts: &mut Facts) {
     let &Arrivals { day: &DayContext { settings, .. }, market } = arrivals;
     for channel in crate::identifiers::Channel::ALL {
@@ -316,14 +317,14 @@ fn record_channels(arrivals: &Arrivals<'_>, came: &[(ArrivalRun, Vec<Lead>)], fa
     }
 }
 
-/// Individuals among those who came, with their customer numbers.
+/// Returns the individuals among the arrivals with their customer numbers.
 fn individuals(came: &[(ArrivalRun, Vec<Lead>)]) -> impl Iterator<Item = (u32, &Lead)> {
     came.iter()
         .filter(|(run, _)| !run.group.is_enterprise())
         .flat_map(|(run, leads)| run.numbers().map(|(_, customer)| customer).zip(leads))
 }
 
-/// Makes those who sign up active, with subscriptions numbered from `first`.
+/// Activates those who sign up, with subscription numbers from `first`.
 fn enrol(arrivals: &Arrivals<'_>, came: &[(ArrivalRun, Vec<Lead>)], first: u32, customers: &mut Customers) {
     let mut subscription = first;
     for (run, leads) in came.iter().filter(|(run, _)| !run.group.is_enterprise()) {
@@ -346,7 +347,7 @@ fn enrol(arrivals: &Arrivals<'_>, came: &[(ArrivalRun, Vec<Lead>)], first: u32, 
     }
 }
 
-/// Puts the subscriptions of individuals on record, numbered from `first`: those who sign up, then those who are lost.
+/// Records the subscriptions of individuals, numbered from `first`: subscribers, then lost leads.
 fn record_openings(
     arrivals: &Arrivals<'_>,
     came: &[(ArrivalRun, Vec<Lead>)],
@@ -396,7 +397,7 @@ fn first_terms(
     FirstTerms { listed_price, promotion, effective_price }
 }
 
-/// The curve that is kept: drift that counts once is used for the decision but not stored.
+/// Returns the stored curve. If drift is counted once, it applies to the decision but is not stored.
 fn stored_curve(traits: &Traits, drifted: &Curve, params: &Params) -> Curve {
     match params.fidelity.drift_counted {
         DriftCounted::EveryRead => *drifted,
@@ -404,7 +405,7 @@ fn stored_curve(traits: &Traits, drifted: &Curve, params: &Params) -> Curve {
     }
 }
 
-/// The row of a lead before it has agreed on anything.
+/// Returns the row of a lead before it has agreed to anything.
 fn newcomer(arrivals: &Arrivals<'_>, n: u32, customer: u32, subscription: u32, lead: &Lead) -> Subscriber {
     let &DayContext { morning, params, .. } = arrivals.day;
     let stored = stored_curve(&lead.traits, &lead.curve, params);
@@ -429,7 +430,7 @@ fn newcomer(arrivals: &Arrivals<'_>, n: u32, customer: u32, subscription: u32, l
         promotion: 0.0,
         effective_price: 0.0,
         effective_c_max: stored.c_max,
-        // Drawn by the first bill or deal.
+        // Drawn with the first bill or deal.
         usage_rate: 0.0,
         period_usage: 0,
         satisfaction: params.initial.customer_satisfaction,

@@ -1,4 +1,5 @@
-//! Competitor events: rivals raise everyone's expectations, and copy what we improved (docs/mechanics/market/competitors.md).
+//! Competitor events: competitors raise all groups' expectations and copy the player's improvements
+//! (docs/mechanics/market/competitors.md).
 
 use crate::canonical::canonical;
 use crate::customers::drift::DriftTotals;
@@ -15,19 +16,19 @@ use crate::series::GivenEvent;
 pub struct Event {
     /// Day on which it happened.
     pub day: u32,
-    /// Size that applied.
+    /// Size that was applied.
     pub boost: f64,
-    /// Size that was drawn, after the growth over the run.
+    /// Drawn size, including growth over the run.
     pub sampled: f64,
-    /// Share of our shared bank that rivals could copy.
+    /// Share of the player's shared bank that competitors could copy.
     pub u: f64,
-    /// Whether copying beat the draw.
+    /// Whether the copied size exceeded the drawn one.
     pub by_feedback: bool,
 }
 
 canonical! { Event { day, boost, sampled, u, by_feedback } }
 
-/// Severity of a boost.
+/// Returns the severity of a boost.
 pub fn severity(boost: f64, law: &Competitor) -> Severity {
     match boost {
         _ if boost < law.competitor_severity_minor_max => Severity::Minor,
@@ -37,7 +38,6 @@ pub fn severity(boost: f64, law: &Competitor) -> Severity {
     }
 }
 
-/// Whether rivals move at all at this time of the run.
 fn events_possible(day: u32, total_days: u32, params: &Params) -> bool {
     let law = &params.competitor;
     let too_early = day < params.drift.drift_grace_period_days;
@@ -45,7 +45,7 @@ fn events_possible(day: u32, total_days: u32, params: &Params) -> bool {
     !law.competitor_events_disabled && !too_early && !too_late
 }
 
-/// Chance of an event on a day, 0 where none can happen.
+/// Returns the probability of an event on a day, 0 if none is possible.
 pub fn event_probability(day: u32, total_days: u32, last_event: Option<u32>, params: &Params) -> f64 {
     let law = &params.competitor;
     if !events_possible(day, total_days, params) {
@@ -60,7 +60,7 @@ pub fn event_probability(day: u32, total_days: u32, last_event: Option<u32>, par
     if gap < least { 0.0 } else { 1.0 / mean }
 }
 
-/// Growth of sizes over the run: from 1 to 4 along a ramp that ends 30 days before the last day.
+/// Returns the growth of sizes over the run: from 1 to 4 along a ramp that ends 30 days before the last day.
 pub fn magnitude_scale(day: u32, total_days: u32, law: &Competitor) -> f64 {
     let start = f64::from(law.magnitude_ramp_start_day);
     let end = (f64::from(total_days) - f64::from(law.competitor_event_late_cutoff_days))
@@ -70,14 +70,14 @@ pub fn magnitude_scale(day: u32, total_days: u32, law: &Competitor) -> f64 {
     least + (most - least) * ramp
 }
 
-/// Size of an event from a log-normal draw: clamped, then scaled.
+/// Returns the size of an event from a log-normal draw: clamped, then scaled.
 pub fn sampled_boost(log_normal: f64, day: u32, total_days: u32, law: &Competitor) -> f64 {
     log_normal.clamp(law.competitor_event_boost_min, law.competitor_event_boost_max)
         * magnitude_scale(day, total_days, law)
 }
 
-/// An event of a sampled size when rivals could copy `u` of the bank: the larger of both applies, and what was
-/// copied leaves the bank.
+/// Resolves an event: the larger of the sampled size and the share `u` of the bank applies, and the copied
+/// part leaves the bank.
 pub fn resolve_event(day: u32, sampled: f64, u: f64, bank: &mut f64, params: &Params) -> Event {
     let feedback = u * *bank;
     let by_feedback = (feedback > sampled) != params.has_fault(Fault::SmallerRivalMove);
@@ -87,21 +87,21 @@ pub fn resolve_event(day: u32, sampled: f64, u: f64, bank: &mut f64, params: &Pa
     Event { day, boost: if by_feedback { feedback } else { sampled }, sampled, u, by_feedback }
 }
 
-/// What rivals will do on a day, before anything of theirs or ours changes it.
+/// A competitor's move on a day, before any change by either side.
 #[derive(Debug, Clone)]
 pub struct RivalMove {
     /// The day.
     pub day: u32,
-    /// Size that was drawn, after the growth over the run.
+    /// Drawn size, including growth over the run.
     pub sampled: f64,
-    /// Share of the shared bank that they can copy.
+    /// Share of the shared bank that can be copied.
     pub u: f64,
-    /// What is left of the stream: the shares of the targeted banks.
+    /// The rest of the stream, from which the shares of the targeted banks are drawn.
     shares: Stream,
 }
 
 impl RivalMove {
-    /// The share of each targeted bank that they copy, of the groups that have one, in alphabetical order.
+    /// Returns the copied share of each non-empty targeted bank, in alphabetical order of the groups.
     pub fn shares(&self, group_bank: &ByGroup<f64>, law: &Competitor) -> Vec<(Group, f64)> {
         let mut stream = self.shares.clone();
         let mut funded: Vec<Group> = Group::all().filter(|group| group_bank[*group] > 0.0).collect();
@@ -112,7 +112,7 @@ impl RivalMove {
     }
 }
 
-/// The move of a day that follows the last event, if there is one.
+/// Returns the move on a day after the last event, if there is one.
 pub fn move_of(
     day: u32,
     total_days: u32,
@@ -131,8 +131,8 @@ pub fn move_of(
     Some(RivalMove { day, sampled: sampled_boost(size, day, total_days, law), u, shares: stream })
 }
 
-/// The next move after a day, which is decided already: chance is keyed by the day, and when an event is possible follows
-/// from the last one.
+/// Returns the next move after a day. It is already determined: draws are keyed by day, and possible days
+/// follow from the last event.
 pub fn next_move(
     after: u32,
     total_days: u32,
@@ -143,7 +143,7 @@ pub fn next_move(
     (after + 1..=total_days).find_map(|day| move_of(day, total_days, last_event, params, streams))
 }
 
-/// Makes the move of the day, if there is one.
+/// Applies the move of the day, if there is one.
 pub fn react(
     day: u32,
     total_days: u32,
@@ -164,7 +164,7 @@ pub fn react(
     events.push(event);
 }
 
-/// Size, before its growth over the run, and share of the bank of today's event, if there is one.
+/// Returns today's event, if any: its size before growth over the run, and the share of the bank.
 pub fn draw_event(chance: f64, law: &Competitor, stream: &mut Stream) -> Option<GivenEvent> {
     if chance <= 0.0 || !stream.bernoulli(chance) {
         return None;
@@ -174,7 +174,7 @@ pub fn draw_event(chance: f64, law: &Competitor, stream: &mut Stream) -> Option<
     Some(GivenEvent { size, u })
 }
 
-/// An event raises everyone's expectations, and those of reactive groups further.
+/// Raises the expectations of all groups, and those of reactive groups further.
 pub fn raise_expectations(boost: f64, drift: &mut DriftTotals, params: &Params) {
     drift.global_quality += boost;
     for group in Group::all() {
@@ -182,7 +182,7 @@ pub fn raise_expectations(boost: f64, drift: &mut DriftTotals, params: &Params) 
     }
 }
 
-/// Rivals copy a share `v` of a group's targeted bank, which raises that group's expectations.
+/// Copies a share `v` of a group's targeted bank, which raises that group's expectations.
 pub fn drain_group(group: Group, v: f64, product: &mut Product, drift: &mut DriftTotals, law: &Competitor) {
     let drained = v * product.group_bank[group];
     drift.quality[group] += drained;
@@ -194,7 +194,7 @@ mod tests {
     use super::*;
 
     fn near(actual: f64, expected: f64) {
-        assert!((actual - expected).abs() < 1e-12, "{actual} instead of {expected}");
+        assert!((actual - expected).abs() < 1e-12, "got {actual}, expected {expected}");
     }
 
     fn group(id: &str) -> Group {

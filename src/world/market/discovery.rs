@@ -1,4 +1,4 @@
-//! Market research: paying for a chance to find an unknown group (docs/mechanics/market/discovery.md).
+//! Market research: paid attempts to discover a group (docs/mechanics/market/discovery.md).
 
 use super::Market;
 use crate::customers::drift::DriftTotals;
@@ -7,7 +7,8 @@ use crate::identifiers::Group;
 use crate::params::Params;
 use crate::random::{Part, Stream, Streams};
 
-/// The outcome of an attempt: found with a fixed chance, and then any of the undiscovered ones alike.
+/// Returns the outcome of an attempt: success with a fixed probability, then any undiscovered group with
+/// equal probability.
 pub fn draw_attempt(undiscovered: &[Group], chance: f64, stream: &mut Stream) -> Option<Group> {
     if undiscovered.is_empty() || !stream.bernoulli(chance) {
         return None;
@@ -16,13 +17,12 @@ pub fn draw_attempt(undiscovered: &[Group], chance: f64, stream: &mut Stream) ->
 }
 
 impl Market {
-    /// The groups that are still to be found: individuals first, each segment by its numbers.
+    /// Returns the undiscovered groups: individuals first, each segment in numeric order.
     pub fn undiscovered(&self) -> impl Iterator<Item = Group> + '_ {
         Group::all().filter(|group| !self.is_known(*group))
     }
 
-    /// The attempt that market research would be now. It follows from the seed and the number of earlier
-    /// attempts alone.
+    /// Returns the outcome of an attempt made now. It depends only on the seed and the number of earlier attempts.
     pub fn next_attempt(&self, params: &Params, streams: &Streams) -> Attempt {
         let law = &params.market_research;
         let undiscovered: Vec<Group> = self.undiscovered().collect();
@@ -35,7 +35,7 @@ impl Market {
         Attempt { earlier: self.attempts, cost: law.discovery_cost_level_1, found }
     }
 
-    /// Counts an attempt, and knows the group it found from now on.
+    /// Counts an attempt and marks the group it found as known.
     pub fn note_attempt(&mut self, attempt: &Attempt, day: u32, params: &Params) {
         self.attempts += 1;
         if let Some(group) = attempt.found {
@@ -48,7 +48,7 @@ impl Market {
     }
 }
 
-/// What is known of an initial group on day 0.
+/// Returns the snapshot of an initial group on day 0.
 pub(super) fn opening_snapshot(group: Group, params: &Params) -> Option<Snapshot> {
     group.initially_known().then(|| Snapshot::take(group, 0, &DriftTotals::default(), params))
 }
@@ -57,7 +57,7 @@ pub(super) fn opening_snapshot(group: Group, params: &Params) -> Option<Snapshot
 mod tests {
     use super::*;
 
-    /// The groups that attempts find one after the other; `pause` days pass between two of them.
+    /// Groups that consecutive attempts find, with `pause` days between attempts.
     fn found(params: &Params, seed: u64, attempts: u32, pause: u32) -> Vec<Option<Group>> {
         let streams = Streams::new(seed);
         let mut market = Market::opening(params);
@@ -99,7 +99,7 @@ mod tests {
             }
         }
         assert!((f64::from(successes) / 20_000.0 - 0.3).abs() < 0.013, "{successes}");
-        // 1,200 first finds over 20 groups: 60 each, with a spread of 7.6.
+        // 1,200 first finds over 20 groups: 60 each, with a standard deviation of 7.6.
         assert!(first[..6].iter().all(|count| *count == 0));
         assert!(first[6..].iter().all(|count| (25..=95).contains(count)), "{first:?}");
     }

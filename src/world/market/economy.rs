@@ -1,4 +1,4 @@
-//! The economy: a hidden index, its delayed publications, and what it does to groups (docs/mechanics/market/economy.md).
+//! The economy: a hidden index, its delayed publication, and its effects on groups (docs/mechanics/market/economy.md).
 
 use crate::canonical::canonical;
 use crate::events::{Facts, Notice, Phase, Reading, Trend};
@@ -13,13 +13,13 @@ use novamind_base::notation::round_to;
 pub struct Economy {
     /// Today's index, hidden.
     pub pmi: f64,
-    /// Whether a first day has passed; before it every multiplier is 1.
+    /// Whether a first day has passed; before that, every multiplier is 1.
     pub started: bool,
     /// Daily values since the last measurement.
     history: Vec<f64>,
     /// Day of the last measurement.
     last_measurement: Option<u32>,
-    /// Measured, not yet published.
+    /// Measured but not yet published readings.
     waiting: Vec<Reading>,
     /// The newest published reading.
     pub published: Option<Reading>,
@@ -27,38 +27,38 @@ pub struct Economy {
 
 canonical! { Economy { pmi, started, history, last_measurement, waiting, published } }
 
-/// Where the cycle pulls the index on a day: mean + amplitude sin(2 pi day / period + phase).
+/// Returns the value to which the cycle pulls the index: mean + amplitude sin(2 pi day / period + phase).
 pub fn cycle_target(day: u32, phase: f64, law: &MacroEconomy) -> f64 {
     let turn = 2.0 * std::f64::consts::PI * f64::from(day) / f64::from(law.macro_pmi_cycle_period_days);
     law.macro_pmi_long_run_mean + law.macro_pmi_cycle_amplitude * libm::sin(turn + phase)
 }
 
-/// Index after a day's step; `z` is a standard normal draw.
+/// Returns the index after one day; `z` is a standard normal draw.
 pub fn next_pmi(pmi: f64, target: f64, z: f64, law: &MacroEconomy) -> f64 {
     let moved = pmi + law.macro_pmi_mean_reversion_rate * (target - pmi) + law.macro_pmi_daily_volatility * z;
     moved.clamp(law.macro_pmi_floor, law.macro_pmi_ceiling)
 }
 
-/// Factor of a sensitivity at an index: max(0.5, 1 + beta (PMI - 50) / 50).
+/// Returns the factor of a sensitivity at an index: max(0.5, 1 + beta (PMI - 50) / 50).
 pub fn macro_multiplier(beta: f64, pmi: f64, law: &MacroEconomy) -> f64 {
     (law.multiplier_neutral + beta * (pmi - law.neutral_pmi) / law.pmi_scale).max(law.multiplier_min)
 }
 
-/// What the economy acts on.
+/// A figure that the economy affects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dimension {
     /// Number of leads.
     LeadGeneration,
     /// Budget at a billing decision.
     WillingnessToPay,
-    /// Speed of replies of a new company.
+    /// Reply speed of a new enterprise.
     DealVelocity,
-    /// Drift of seats.
+    /// Drift of the number of seats.
     SeatCount,
 }
 
 impl Economy {
-    /// The economy of day 0.
+    /// Returns the economy on day 0.
     pub fn opening(params: &Params) -> Economy {
         Economy {
             pmi: params.economy.macro_pmi_initial,
@@ -70,13 +70,13 @@ impl Economy {
         }
     }
 
-    /// The newest measurement, whether it is published or waits for it.
+    /// Returns the newest measurement, published or not.
     pub fn measured(&self) -> Option<&Reading> {
         self.waiting.last().or(self.published.as_ref())
     }
 
-    /// Multiplier of a group in a dimension at the present index; 1 before the first day and where the group
-    /// does not react.
+    /// Returns the multiplier of a group in a dimension at the current index; 1 before the first day or if
+    /// the group does not react.
     pub fn multiplier(&self, group: Group, dimension: Dimension, params: &Params) -> f64 {
         let beta = &params.group(group).macro_beta;
         let beta = match dimension {
@@ -103,7 +103,7 @@ fn phase_of_run(law: &MacroEconomy, streams: &Streams) -> f64 {
     }
 }
 
-/// The index of a day, from that of the day before.
+/// Returns the index of a day from that of the day before.
 pub fn index_of(day: u32, yesterday: f64, params: &Params, streams: &Streams) -> f64 {
     let law = &params.economy;
     let drawn = || {
@@ -114,7 +114,8 @@ pub fn index_of(day: u32, yesterday: f64, params: &Params, streams: &Streams) ->
     params.replayed_series().and_then(|series| series.pmi(day)).unwrap_or_else(drawn)
 }
 
-/// Moves the index by a day unless it is held, measures when a month is full, and publishes what has waited long enough.
+/// Advances the index unless it is fixed, takes a measurement when a month is complete, and publishes
+/// readings after their delay.
 pub fn step(
     day: u32,
     economy: &mut Economy,
@@ -161,13 +162,13 @@ fn publish(day: u32, economy: &mut Economy, law: &MacroEconomy, facts: &mut Fact
 pub(crate) mod tests {
     use super::*;
 
-    /// An economy that has started and stands at an index.
+    /// An economy that has started, at a given index.
     pub(crate) fn economy_at(pmi: f64) -> Economy {
         Economy { pmi, started: true, ..Economy::opening(&Params::shipped()) }
     }
 
     fn near(actual: f64, expected: f64) {
-        assert!((actual - expected).abs() < 5e-10, "{actual} instead of {expected}");
+        assert!((actual - expected).abs() < 5e-10, "got {actual}, expected {expected}");
     }
 
     fn multiplier(id: &str, dimension: Dimension, pmi: f64) -> f64 {

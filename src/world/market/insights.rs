@@ -1,4 +1,4 @@
-//! Insights: what a study tells of a group, true values times a noise that shrinks with the level
+//! Insights: estimates of a group, computed from true values and a noise that decreases with the study level
 //! (docs/mechanics/market/discovery.md).
 
 use super::Market;
@@ -11,7 +11,7 @@ use crate::random::{NumpyStream, Part, Streams};
 use novamind_base::notation::round_to;
 
 impl Snapshot {
-    /// The group on a day, with the drift of the whole group and without that of single customers.
+    /// Takes a snapshot of a group on a day, including drift of the whole group but not of single customers.
     pub fn take(group: Group, day: u32, drift: &DriftTotals, params: &Params) -> Snapshot {
         let own = params.group(group);
         let moved = drift.expectation(group);
@@ -24,14 +24,14 @@ impl Snapshot {
     }
 }
 
-/// A value that is estimated; each has a noise of its own.
+/// An estimated value; each has its own noise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Field {
     /// Budget.
     WillingnessToPay,
     /// Units a day.
     UsageVolume,
-    /// Quality floor.
+    /// Minimum quality.
     QualityFloor,
     /// Size of the market.
     MarketCap,
@@ -39,28 +39,28 @@ pub enum Field {
     GrowthRate,
     /// Aversion to long contracts.
     LockinAversion,
-    /// Fewest seats of a company.
+    /// Minimum seats of an enterprise.
     SeatMinimum,
-    /// Most seats of a company.
+    /// Maximum seats of an enterprise.
     SeatMaximum,
-    /// Turns a company takes part in.
+    /// Maximum turns of an enterprise.
     DecisionRounds,
-    /// Days a company takes to answer.
+    /// Reply delay of an enterprise in days.
     ResponseDays,
-    /// Leads that the group brings to another one.
+    /// Leads that the group brings to another group.
     ReferralTo(Group),
-    /// Leads that another group brings to it.
+    /// Leads that another group brings to this group.
     ReferralFrom(Group),
-    /// Leads that the group brings to itself; never shown, but the release draws for it.
+    /// Leads that the group brings to itself; never shown, but the release makes the draw.
     ReferralToItself,
-    /// Weight of its reputation for another group.
+    /// Weight of the group's reputation for another group.
     ReputationTo(Group),
-    /// Weight of another group's reputation for it.
+    /// Weight of another group's reputation for this group.
     ReputationFrom(Group),
 }
 
 impl Field {
-    /// Number of the field as a key of random streams; frozen, recorded runs depend on it.
+    /// Returns the key of the field in random streams. The keys are fixed because recorded runs depend on them.
     fn key(self) -> u64 {
         let linked = |direction: u64, group: Group| 100 * direction + group.index() as u64;
         match self {
@@ -83,57 +83,57 @@ impl Field {
     }
 }
 
-/// Estimates of a group, rounded as they are shown.
+/// Estimates of a group, rounded for display.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Insights {
     /// Group.
     pub group: Group,
-    /// Level of knowledge, 1..=5.
+    /// Study level, 1..=5.
     pub level: u8,
-    /// Largest relative error of that level.
+    /// Maximum relative error at that level.
     pub noise: f64,
-    /// Budget, dollars a month, of companies per seat.
+    /// Budget, dollars a month; per seat for enterprises.
     pub willingness_to_pay: f64,
-    /// Units a day, of companies per seat.
+    /// Units a day; per seat for enterprises.
     pub usage_volume: f64,
-    /// Quality floor.
+    /// Minimum quality.
     pub quality_floor: f64,
-    /// Customers or accounts the market holds, at least 1.
+    /// Customers or accounts in the market, at least 1.
     pub market_cap: u64,
     /// Growth of the market a year, at least 0.
     pub growth_rate: f64,
     /// Aversion to long contracts, at least 0.
     pub lockin_aversion: f64,
-    /// What only companies have.
+    /// Estimates that only enterprises have.
     pub company: Option<CompanyInsights>,
-    /// Leads a day and subscriber that the group brings to others, the largest first.
+    /// Leads a day and subscriber that the group brings to others, in descending order.
     pub referrals_to: Vec<(Group, f64)>,
-    /// Leads a day and subscriber that others bring to it, the largest first.
+    /// Leads a day and subscriber that others bring to the group, in descending order.
     pub referrals_from: Vec<(Group, f64)>,
-    /// Weights of its reputation for others, the largest first.
+    /// Weights of the group's reputation for others, in descending order.
     pub reputation_to: Vec<(Group, f64)>,
-    /// Weights of others' reputation for it, the largest first.
+    /// Weights of others' reputation for the group, in descending order.
     pub reputation_from: Vec<(Group, f64)>,
 }
 
-/// Estimates of a group of companies.
+/// Estimates of a group of enterprises.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CompanyInsights {
-    /// Fewest seats, at least 1.
+    /// Minimum seats, at least 1.
     pub seats_least: u64,
-    /// Most seats, at least the fewest.
+    /// Maximum seats, at least the minimum.
     pub seats_most: u64,
-    /// Turns a company takes part in, at least 1.
+    /// Maximum turns of an enterprise, at least 1.
     pub decision_rounds: u64,
-    /// Days a company takes to answer, at least 1.
+    /// Reply delay of an enterprise in days, at least 1.
     pub response_days: f64,
 }
 
-/// Insights into a known group at its present level; equal on every call and after a refresh. `None` for a group that was
-/// not discovered.
+/// Returns the estimates of a known group at its current level; equal for every call and after a refresh.
+/// Returns `None` for an undiscovered group.
 ///
-/// With independent noise they are also equal whatever else was found. In the release, the values are drawn one after the
-/// other from one sequence, so that another known group shifts the draws of the links.
+/// With independent noise, they do not depend on other discoveries. In the release, values are drawn from one
+/// sequence, so that another known group shifts the draws of the links.
 pub fn insights(group: Group, market: &Market, params: &Params, streams: &Streams) -> Option<Insights> {
     match params.fidelity.insight_noise {
         InsightNoise::Independent => {
@@ -150,15 +150,15 @@ pub fn insights(group: Group, market: &Market, params: &Params, streams: &Stream
     }
 }
 
-/// The seed of a group's errors in the release: the first four characters of its name and `_insights` as a number,
-/// modulo 2^31. `D_S01` to `D_S09` share one.
+/// Returns the seed of a group's errors in the release: the first four characters of its name and `_insights`
+/// as a number, modulo 2^31. `D_S01` to `D_S09` have the same one.
 fn release_seed(group: Group) -> u32 {
     let name = format!("{}_insights", group.id());
     let letters = name.bytes().take(4).enumerate();
     letters.fold(0, |seed, (at, letter)| seed | u32::from(letter) << (8 * at)) & 0x7fff_ffff
 }
 
-/// Insights with given noise: `draw` returns z in [-1, 1) of each field, in the order of the release.
+/// Returns estimates with given noise. `draw` returns z in [-1, 1) for each field, in the order of the release.
 fn insights_with(
     group: Group,
     market: &Market,
@@ -240,7 +240,7 @@ fn company_insights(
     Some(CompanyInsights { seats_least, seats_most, decision_rounds, response_days })
 }
 
-/// The whole part of an estimate, at least 1.
+/// Returns the integer part of an estimate, at least 1.
 fn whole(value: f64) -> u64 {
     value.trunc().max(1.0) as u64
 }
@@ -249,7 +249,7 @@ fn whole(value: f64) -> u64 {
 mod tests {
     use super::*;
 
-    /// Insights with the errors of the release.
+    /// Estimates with the errors of the release.
     fn estimates(id: &str, level: u8, day: u32) -> Insights {
         let mut params = Params::shipped();
         params.fidelity.insight_noise = InsightNoise::Release;
@@ -353,7 +353,7 @@ mod tests {
             let truth = params.group(Group::parse(id).expect("a group")).usage_demand_mean;
             (estimates(id, level, day).usage_volume / truth - 1.0) / params.level(level).noise
         };
-        assert!((z("S1", 1, 0) - z("S1", 5, 52)).abs() < 0.02, "two levels err in the same direction");
+        assert!((z("S1", 1, 0) - z("S1", 5, 52)).abs() < 0.02, "errors of two levels have the same sign");
         let pay = |id: &str| {
             let truth = params.group(Group::parse(id).expect("a group")).c_max_mean;
             (estimates(id, 1, 0).willingness_to_pay / truth - 1.0) / params.level(1).noise
@@ -376,13 +376,13 @@ mod tests {
         let first = told(&market);
         assert_eq!(first, told(&market));
         assert_ne!(first, insights(s1, &market, &params, &Streams::new(43)).expect("S1 is known"));
-        // A group that is found later shifts nothing that was told before.
+        // A group that is discovered later does not change earlier estimates.
         let found = Group::parse("D_S05").expect("a group");
         market.knowledge[found].level = 1;
         let more = told(&market);
         assert_eq!(more.willingness_to_pay, first.willingness_to_pay);
         assert!(first.reputation_to.iter().all(|link| more.reputation_to.contains(link)));
-        // Two levels tell no exact truth: their draws are not proportional.
+        // Two levels do not reveal the exact value, because their draws are not proportional.
         market.knowledge[s1].level = 2;
         let truth = params.group(s1).c_max_mean;
         let z = |value: f64, noise: f64| (value / truth - 1.0) / noise;

@@ -1,4 +1,4 @@
-//! A sample of leads of a group, and what they would choose: decided by the functions that decide on arrivals
+//! A sample of a group's leads and their choices, computed by the functions that decide on real arrivals
 //! (docs/mechanics/customers/curve-explorer.md).
 
 use super::arrivals::{FirstLook, curve_and_demand_under};
@@ -10,7 +10,7 @@ use crate::identifiers::{ByPlan, Group};
 use crate::params::Params;
 use crate::random::{Part, Stream, Streams, Word};
 
-/// A lead: its curve, what it compares quotas with, and how it misjudges quality.
+/// A lead: its curve, the demand it compares quotas with, and its error in judging quality.
 #[derive(Debug, Clone, Copy)]
 struct SampledLead {
     curve: Curve,
@@ -18,38 +18,38 @@ struct SampledLead {
     misjudgement: Word,
 }
 
-/// Leads of one group, drawn from streams as arriving ones are.
+/// Leads of one group, drawn like arriving ones.
 #[derive(Debug, Clone)]
 pub struct LeadSample {
     group: Group,
     leads: Vec<SampledLead>,
 }
 
-/// What the leads of a sample would do.
+/// The choices of the leads of a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FirstChoices {
-    /// Leads that were asked, at least 1.
+    /// Number of leads, at least 1.
     pub leads: u32,
-    /// Individuals who take a plan; of companies, those that ask for an offer stand under A.
+    /// Individuals who sign up, by plan. Enterprises that request an offer are counted under A.
     pub takers: ByPlan<u32>,
-    /// Sum of the first bills, dollars; 0 of companies, which negotiate theirs.
+    /// Sum of the first bills, dollars; 0 for enterprises, which negotiate their price.
     pub first_bills: f64,
 }
 
 impl FirstChoices {
-    /// Share of the leads that sign up, of companies that ask for an offer, 0..=1.
+    /// Returns the share of leads that sign up, or of enterprises that request an offer, 0..=1.
     pub fn conversion(&self) -> f64 {
         f64::from(self.takers.0.iter().sum::<u32>()) / f64::from(self.leads)
     }
 
-    /// Dollars that a lead brings with its first bill, in the mean of all leads.
+    /// Returns the mean first bill per lead, in dollars.
     pub fn revenue_per_lead(&self) -> f64 {
         self.first_bills / f64::from(self.leads)
     }
 }
 
 impl LeadSample {
-    /// The first so many customers of a group under these streams, with what the market has added to their curves.
+    /// Draws the first customers of a group from these streams, with the market's change of their curves.
     pub fn draw(
         group: Group,
         count: u32,
@@ -61,7 +61,7 @@ impl LeadSample {
         let traits = streams.keys(Part::Traits, &keys);
         let noises = streams.first_words(Part::LeadNoise, &keys);
         let lead = |(key, misjudgement)| {
-            // The speed of deals moves no trait that a first choice reads.
+            // The speed of deals affects no trait that a first choice uses.
             let traits = traits_from(Stream::of(key), group, 1.0, params);
             let (curve, demand) = curve_and_demand_under(expectation, &traits, params);
             SampledLead { curve, demand, misjudgement }
@@ -69,8 +69,9 @@ impl LeadSample {
         LeadSample { group, leads: traits.into_iter().zip(noises).map(lead).collect() }
     }
 
-    /// What the leads would do with these offers: `promotion` is that for leads, `ongoing` that for subscribers of a plan,
-    /// which makes the first bill cheaper and wins nobody; dollars a month.
+    /// Returns the choices of the leads for these offers. `promotion` is the discount for leads; `ongoing` is
+    /// the discount for subscribers of a plan, which lowers the first bill but does not affect the choice.
+    /// Both in dollars a month.
     pub fn choose(
         &self,
         offers: &ByPlan<Offer>,
@@ -98,8 +99,8 @@ impl LeadSample {
         choices
     }
 
-    /// Qualities that all of these shares of the leads require at most at a price, in the order of the shares (0..=1). A
-    /// price above their budget is accepted by none, whatever the quality: infinity.
+    /// Returns the qualities that these shares (0..=1) of the leads require at most at a price, in the order
+    /// of the shares. Leads whose budget is below the price accept no quality and count as infinity.
     pub fn required(&self, price: f64, shares: &[f64], params: &Params) -> Vec<f64> {
         let required = |lead: &SampledLead| match price > lead.curve.c_max {
             true => f64::INFINITY,
@@ -111,7 +112,7 @@ impl LeadSample {
         shares.iter().map(|share| all[((share * last as f64).round() as usize).min(last)]).collect()
     }
 
-    /// The budget that a share of the leads does not exceed, dollars a month.
+    /// Returns the budget that a share of the leads does not exceed, dollars a month.
     pub fn budget(&self, share: f64) -> f64 {
         let mut budgets: Vec<f64> = self.leads.iter().map(|lead| lead.curve.c_max).collect();
         budgets.sort_by(f64::total_cmp);
@@ -139,7 +140,8 @@ mod tests {
         ByPlan([Offer { price, quality, quota: 1e6 }; 3])
     }
 
-    /// Conversions of the first week in the simulator, with one price on all plans (configs/lessons/price-follows-quality.toml).
+    /// Conversions of the first week in the simulator with the same price for all plans
+    /// (configs/lessons/price-follows-quality.toml).
     #[test]
     fn conversions_are_within_two_points_of_those_of_the_simulator() {
         let (params, s1) = (Params::shipped(), sample("S1"));
@@ -189,7 +191,7 @@ mod tests {
         assert_eq!(ongoing.takers, list.takers);
         assert!((ongoing.revenue_per_lead() / list.revenue_per_lead() - 0.6).abs() < 1e-12);
         let same = s1.choose(&alike(12.0, 0.4), 0.0, &none, &params);
-        assert_eq!(promoted, same, "a list price of 20 less 8 is a price of 12");
+        assert_eq!(promoted, same, "a list price of 20 minus 8 is a price of 12");
     }
 
     #[test]

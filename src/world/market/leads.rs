@@ -1,4 +1,4 @@
-//! How many leads a group brings today (docs/mechanics/market/leads.md).
+//! The number of leads of a group per day (docs/mechanics/market/leads.md).
 
 use super::Market;
 use super::economy::Dimension;
@@ -11,14 +11,14 @@ use crate::identifiers::{ByChannel, ByGroup, Channel, Group};
 use crate::params::{Leads, Params};
 use crate::settings::TargetedAds;
 
-/// The factors of a group's expected leads today; hidden.
+/// Factors of a group's expected leads today; hidden from the player.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LeadFactors {
     /// Reputation of the group.
     pub reputation: f64,
-    /// Room left in the market.
+    /// Unused share of the market.
     pub saturation: f64,
-    /// Weekday times day of the month.
+    /// Factor of the weekday times factor of the day of the month.
     pub calendar: f64,
     /// The economy.
     pub economy: f64,
@@ -35,7 +35,7 @@ pub struct LeadFactors {
 canonical! { LeadFactors { reputation, saturation, calendar, economy, social, surge, paid, network } }
 
 impl LeadFactors {
-    /// Expected leads: lambda = R D C M A Z (X + Y).
+    /// Returns the expected leads: lambda = R D C M A Z (X + Y).
     pub fn expected(&self) -> f64 {
         let paid: f64 = self.paid.iter().sum();
         self.reputation
@@ -47,7 +47,7 @@ impl LeadFactors {
             * (paid + self.network)
     }
 
-    /// How a lead came, from a uniform draw: in proportion to today's contributions, channels first.
+    /// Picks the source of a lead from a uniform draw, in proportion to today's contributions, channels first.
     pub fn source(&self, u: f64) -> Source {
         let total = self.paid.iter().sum::<f64>() + self.network;
         if total <= 0.0 {
@@ -63,18 +63,18 @@ impl LeadFactors {
         if self.network > 0.0 {
             return Source::Network;
         }
-        // Rounding pushed the draw past the last contribution.
+        // Rounding moved the draw past the last contribution.
         let last = Channel::ALL.into_iter().rev().find(|channel| self.paid[*channel] > 0.0);
         last.map_or(Source::Organic, Source::of_channel)
     }
 }
 
-/// Customers or accounts the market of a group holds on a day.
+/// Returns the number of customers or accounts in a group's market on a day.
 pub fn market_cap(base: f64, annual_growth: f64, day: u32, law: &Leads) -> f64 {
     base * (1.0 + annual_growth * f64::from(day) / law.days_per_year)
 }
 
-/// Room left in a market: max(0, 1 - (N / cap)^2); 1 for an empty or sizeless market.
+/// Returns the saturation factor: max(0, 1 - (N / cap)^2); 1 for an empty market or a market of size 0.
 pub fn saturation(subscribers: u32, cap: f64, law: &Leads) -> f64 {
     if subscribers == 0 || cap <= 0.0 {
         return 1.0;
@@ -83,12 +83,12 @@ pub fn saturation(subscribers: u32, cap: f64, law: &Leads) -> f64 {
     (law.saturation_base - taken).max(law.saturation_floor)
 }
 
-/// Leads that a spend brings before the factors: dollars times yield per 1,000 dollars.
+/// Returns the leads from a budget before the factors: dollars times yield per 1,000 dollars.
 pub fn paid_leads(spend: f64, leads_per_unit: f64, law: &Leads) -> f64 {
     spend * leads_per_unit / law.ad_spend_unit
 }
 
-/// What the leads of a day depend on.
+/// Inputs of the leads of a day.
 pub struct LeadContext<'a> {
     /// Day.
     pub day: u32,
@@ -104,7 +104,7 @@ pub struct LeadContext<'a> {
     pub params: &'a Params,
 }
 
-/// Leads by word of mouth before the factors, by the group whose subscribers bring them.
+/// Returns the leads by word of mouth before the factors, by the group whose subscribers bring them.
 pub fn word_of_mouth<'a>(
     group: Group,
     context: &'a LeadContext<'_>,
@@ -120,7 +120,7 @@ pub fn word_of_mouth<'a>(
         .map(move |source| (source, f64::from(subscribers[source]) * rate(source)))
 }
 
-/// Factors of a discovered group.
+/// Returns the factors of a discovered group.
 pub fn lead_factors(group: Group, context: &LeadContext<'_>) -> LeadFactors {
     let &LeadContext { day, calendar, market, subscribers, ads, params } = context;
     let own = params.group(group);
@@ -154,7 +154,7 @@ mod tests {
     }
 
     fn near(actual: f64, expected: f64) {
-        assert!((actual - expected).abs() <= 1e-9 * expected.abs(), "{actual} instead of {expected}");
+        assert!((actual - expected).abs() <= 1e-9 * expected.abs(), "got {actual}, expected {expected}");
     }
 
     #[test]

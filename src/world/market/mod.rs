@@ -1,4 +1,4 @@
-//! The market around the company: who hears of it, what they think, what rivals and the economy do.
+//! The market: discovery, leads, reputation, social media, competitors and the economy.
 
 pub mod arrivals;
 pub mod competitors;
@@ -25,9 +25,9 @@ use super::settings::Settings;
 pub struct Market {
     /// Reputation by group.
     pub reputation: reputation::ReputationBook,
-    /// How much expectations and budgets have moved.
+    /// Accumulated change of expectations and budgets.
     pub drift: drift::DriftTotals,
-    /// Leads a day for 1,000 dollars a day, by channel and group.
+    /// Leads a day per 1,000 dollars a day, by channel and group.
     pub yields: ByChannel<ByGroup<f64>>,
     /// The economy.
     pub economy: economy::Economy,
@@ -35,11 +35,11 @@ pub struct Market {
     pub competitors: Vec<competitors::Event>,
     /// Demand surges drawn so far.
     pub surges: Vec<surges::Surge>,
-    /// What the company knows about each group.
+    /// The player's knowledge of each group.
     pub knowledge: ByGroup<Knowledge>,
-    /// Attempts to find a group so far.
+    /// Number of attempts to discover a group.
     pub attempts: u32,
-    /// Studies of groups that run, in the order in which they were ordered.
+    /// Studies in progress, in the order in which they were ordered.
     pub studies: Vec<Study>,
     /// Social media.
     pub social: social::Social,
@@ -50,7 +50,7 @@ canonical! {
 }
 
 impl Market {
-    /// The market of day 0.
+    /// Returns the market of day 0.
     pub fn opening(params: &Params) -> Market {
         let knowledge = |group: Group| {
             let known = group.initially_known();
@@ -80,7 +80,7 @@ impl Market {
         }
     }
 
-    /// Whether a group has been discovered.
+    /// Returns whether a group is known.
     pub fn is_known(&self, group: Group) -> bool {
         self.knowledge[group].level >= 1
     }

@@ -1,30 +1,30 @@
-//! Group research: studies that are paid at once and finish some days later (docs/mechanics/market/discovery.md).
+//! Market studies of groups: paid at once and completed some days later (docs/mechanics/market/discovery.md).
 
 use super::Market;
 use crate::events::{Facts, Notice, Snapshot, Study};
 use crate::identifiers::Group;
 use crate::params::{GroupResearch, Params};
 
-/// Level a study aims at when none is named: the present one, at least the lowest there is.
+/// Returns the default target level of a study: the current level, but at least the lowest allowed.
 pub fn default_target(level: u8, law: &GroupResearch) -> u8 {
     level.max(law.min_target_level)
 }
 
 impl Market {
-    /// The study of a group that runs, if one does.
+    /// Returns the study of a group that is in progress, if any.
     pub fn running_study(&self, group: Group) -> Option<&Study> {
         self.studies.iter().find(|study| study.group == group)
     }
 
-    /// The study that an order of today would be.
+    /// Returns the study that would be ordered today.
     pub fn plan_study(&self, group: Group, target: u8, day: u32, params: &Params) -> Study {
         let due_day = day + params.level(target).delay_days;
         Study { group, target, before: self.knowledge[group].level, due_day }
     }
 }
 
-/// Finishes what is due, in the order in which it was ordered: the level rises, and the snapshot is today's
-/// market as it stands this morning.
+/// Completes due studies in the order in which they were ordered: the level rises, and the snapshot is the
+/// market of this morning.
 pub fn complete(day: u32, market: &mut Market, params: &Params, facts: &mut Facts) {
     let Market { studies, knowledge, drift, .. } = market;
     for study in studies.extract_if(.., |study| study.due_day <= day) {
@@ -44,7 +44,7 @@ mod tests {
     use super::*;
 
     fn near(actual: f64, expected: f64) {
-        assert!((actual - expected).abs() < 1e-6, "{actual} instead of {expected}");
+        assert!((actual - expected).abs() < 1e-6, "got {actual}, expected {expected}");
     }
 
     fn order(market: &mut Market, id: &str, target: u8, day: u32, params: &Params) -> Group {

@@ -1,4 +1,4 @@
-//! Demand surges: silent rushes of leads (docs/mechanics/market/surges.md).
+//! Demand surges: unannounced, temporary increases of leads (docs/mechanics/market/surges.md).
 
 use crate::canonical::canonical;
 use crate::params::{DemandSurge, Params, SurgeStart};
@@ -7,7 +7,7 @@ use crate::random::{Part, Streams};
 /// One demand surge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Surge {
-    /// Day it was drawn for.
+    /// Day for which it was drawn.
     pub day: u32,
     /// First day on which it no longer acts.
     pub end_day: u32,
@@ -17,7 +17,7 @@ pub struct Surge {
 
 canonical! { Surge { day, end_day, multiplier } }
 
-/// Last day of the week that holds a day: weeks end on days divisible by 7, and the run on its last day.
+/// Returns the last day of the week of a day: weeks end on days divisible by 7, and the last one with the run.
 pub fn week_end(day: u32, days_per_week: u32, total_days: u32) -> u32 {
     day.next_multiple_of(days_per_week).min(total_days.max(day))
 }
@@ -33,7 +33,7 @@ pub fn draw_surge(day: u32, law: &DemandSurge, streams: &Streams) -> Option<Surg
     Some(Surge { day, end_day: day + duration, multiplier })
 }
 
-/// The surge of a day: the recorded one where a record is replayed, otherwise drawn.
+/// Returns the surge of a day: from the record if one is replayed, otherwise drawn.
 pub fn surge_of(day: u32, params: &Params, streams: &Streams) -> Option<Surge> {
     let law = &params.demand_surge;
     match params.replayed_series().and_then(|series| series.demand_surge(day)) {
@@ -46,7 +46,7 @@ pub fn surge_of(day: u32, params: &Params, streams: &Streams) -> Option<Surge> {
     }
 }
 
-/// On the first day of a week, draws the surges of all its days.
+/// Draws the surges of all days of a week on its first day.
 pub fn draw_week(day: u32, total_days: u32, surges: &mut Vec<Surge>, params: &Params, streams: &Streams) {
     let length = params.run.days_per_week;
     if day % length == 1 {
@@ -55,8 +55,8 @@ pub fn draw_week(day: u32, total_days: u32, surges: &mut Vec<Surge>, params: &Pa
     }
 }
 
-/// Factor of all surges that act on a day; 1 without any. In the release a surge acts from the first day of
-/// the week it was drawn in, so there is no test of its own day.
+/// Returns the product of all surges that act on a day; 1 without any. In the release a surge acts from the
+/// first day of the week in which it was drawn, so its own day is not tested.
 pub fn surge_factor(day: u32, surges: &[Surge], start: SurgeStart) -> f64 {
     let begun = |surge: &Surge| start == SurgeStart::Week || surge.day <= day;
     surges.iter().filter(|surge| day < surge.end_day && begun(surge)).map(|surge| surge.multiplier).product()

@@ -1,15 +1,16 @@
-//! Channel yields wander: once a month every channel brings a little more or less (docs/mechanics/market/leads.md).
+//! Monthly random changes of channel yields (docs/mechanics/market/leads.md).
 
 use crate::identifiers::{ByChannel, ByGroup, Channel, Group};
 use crate::params::{Leads, Params};
 use crate::random::{Part, Streams};
 
-/// Yield after a month; `z` is a standard normal draw. A yield of 0 stays 0.
+/// Returns the yield after a month; `z` is a standard normal draw. A yield of 0 stays 0.
 pub fn varied_yield(value: f64, z: f64, law: &Leads) -> f64 {
     (value + law.monthly_channel_noise_fraction * value * z).max(law.monthly_channel_value_min)
 }
 
-/// Varies all yields, also of undiscovered groups, on days divisible by 30; channels draw alphabetically.
+/// Varies all yields, including those of undiscovered groups, on days divisible by 30. Channels draw in
+/// alphabetical order.
 pub fn vary(day: u32, yields: &mut ByChannel<ByGroup<f64>>, params: &Params, streams: &Streams) {
     let interval = params.leads.monthly_channel_noise_interval_days;
     if !day.is_multiple_of(interval) {

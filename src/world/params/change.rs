@@ -1,4 +1,4 @@
-//! Parameters that change while a run goes on.
+//! Changes of parameters during a run.
 
 use toml::{Table, Value};
 
@@ -6,29 +6,29 @@ use super::Params;
 use super::load::{ParameterError, checked, override_table};
 use super::names::{keys, nearest_keys, value_at};
 
-/// Parameters, whole tables or lists of them, that act when a run begins and never again, or are words of what was
-/// recorded already.
+/// Parameters, or tables and lists of parameters, that take effect only at the start of a run, or that define
+/// texts that are already recorded.
 const OF_THE_START: [&str; 6] =
     ["run.seed", "run.total_days", "run.days_per_week", "initial", "channel", "personas"];
-/// Parameters of day 0 that act on every customer who comes.
+/// Parameters of day 0 that apply to every new customer.
 const OF_EVERY_CUSTOMER: [&str; 2] = ["initial.customer_satisfaction", "initial.customer_relationship"];
 
-/// A single parameter whose value differs between two sets.
+/// A parameter with different values in two sets.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Difference {
     /// Full key.
     pub key: String,
-    /// Its value in the first set; none if it has none.
+    /// Value in the first set, or `None` if it is missing there.
     pub old: Option<Value>,
-    /// Its value in the second.
+    /// Value in the second set, or `None` if it is missing there.
     pub new: Option<Value>,
 }
 
 impl Params {
-    /// The value of a parameter, or of a list or table of them.
+    /// Returns the value of a parameter, or of a list or table of parameters.
     ///
     /// # Errors
-    /// There is none of this name; the nearest ones are named.
+    /// If no parameter has this name. The error lists similar names.
     pub fn value(&self, key: &str) -> Result<Value, ParameterError> {
         let tables = self.tables();
         value_at(&tables, key).cloned().ok_or_else(|| {
@@ -42,10 +42,11 @@ impl Params {
         })
     }
 
-    /// These parameters with another value of one of them, or of a list or table of them.
+    /// Returns a copy with another value of a parameter, or of a list or table of parameters.
     ///
     /// # Errors
-    /// As [`Params::load`] for a single override; the parameter acts only when a run begins.
+    /// As [`Params::load`] for a single override, or if the parameter takes effect only at the start of a
+    /// run.
     pub fn with(&self, key: &str, value: Value) -> Result<Params, ParameterError> {
         self.value(key)?;
         let nested = key
@@ -66,7 +67,7 @@ impl Params {
         }
     }
 
-    /// The single parameters in which another set differs from this one.
+    /// Returns the parameters in which another set differs from this one.
     pub fn differences(&self, other: &Params) -> Vec<Difference> {
         if self == other {
             return Vec::new();

@@ -1,4 +1,4 @@
-//! Ranges of the parameters and the relations between them.
+//! Ranges of parameters and relations between them.
 
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
@@ -13,15 +13,15 @@ use super::{Fidelity, GroupDrift, IndividualDrift, MacroBeta, Params, Personas, 
 type Problem = (String, String);
 pub(super) type Checked = Result<(), Problem>;
 
-/// The smallest and the largest number that are allowed.
+/// The smallest and the largest allowed number.
 pub(super) type Range = RangeInclusive<f64>;
 
-/// The lower end of a range of numbers above 0.
+/// The lower bound of a range of positive numbers.
 pub(super) const POSITIVE: f64 = f64::MIN_POSITIVE;
 pub(super) const ANY: Range = f64::NEG_INFINITY..=f64::INFINITY;
 
-/// Defines tables of parameters. `where LOW..=HIGH` after the type of a field is the range of its numbers, also of those
-/// in lists; `as "key"` after its name is its key, if the two differ.
+/// Defines tables of parameters. `where LOW..=HIGH` after the type of a field is the range of its numbers,
+/// including those in lists. `as "key"` after its name is its key if it differs from the name.
 macro_rules! parameters {
     ($($(#[$meta:meta])* pub struct $name:ident {
         $($(#[$of_field:meta])* pub $field:ident $(as $key:literal)?: $type:ty $(where $range:expr)?,)*
@@ -48,9 +48,9 @@ macro_rules! parameters {
 }
 pub(super) use parameters;
 
-/// A type that parameters are read as.
+/// A type of parameters.
 pub(super) trait Ranged {
-    /// Checks the numbers of a value that is read as this type, by default a single value.
+    /// Checks the numbers of a value that is read as this type. The default is a single value.
     fn check(value: &Value, path: &str, range: &Range) -> Checked {
         match as_number(value) {
             Some(number) if !range.contains(&number) => {
@@ -96,7 +96,7 @@ impl<T: Ranged> Ranged for BTreeMap<String, T> {
     }
 }
 
-/// Checks the value of a key if it is there.
+/// Checks the value of a key if it is present.
 pub(super) fn field<T: Ranged>(table: &Value, path: &str, key: &str, range: &Range) -> Checked {
     let Some(value) = table.get(key) else { return Ok(()) };
     let path = if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
@@ -119,11 +119,11 @@ pub(super) fn ranges(tables: &Value) -> Checked {
     Params::check(tables, "", &ANY)
 }
 
-/// Names of bounds: that of the lower one, that of the upper one, and whether the lower one has to be smaller.
+/// Suffix of a lower bound, suffix of its upper bound, and whether the lower bound has to be strictly smaller.
 const BOUNDS: [(&str, &str, bool); 3] =
     [("_min", "_max", false), ("_low", "_high", false), ("_low", "_high_exclusive", true)];
 
-/// Checks that no lower bound is above the upper bound of the same name, wherever a table has both.
+/// Checks that no lower bound exceeds the upper bound of the same name, in every table that has both.
 pub(super) fn bounds(tables: &Table) -> Checked {
     tables.iter().try_for_each(|(name, value)| match value {
         Value::Table(table) => bounds_of(table, name),
@@ -156,7 +156,6 @@ fn as_number(value: &Value) -> Option<f64> {
     }
 }
 
-/// No number of the world is without bounds.
 fn finite(value: &Value, path: String) -> Checked {
     match value {
         Value::Float(number) if !number.is_finite() => {
@@ -172,7 +171,7 @@ fn finite(value: &Value, path: String) -> Checked {
     }
 }
 
-/// Checks what single values cannot show: order, sizes of matrices, minima below maxima, sums of chances.
+/// Checks relations between values: order, sizes of matrices, bounds, and sums of probabilities.
 pub(super) fn relations(params: &Params) -> Checked {
     ordered_pairs(params)?;
     ladders(params)?;
@@ -292,7 +291,10 @@ mod tests {
     use super::*;
 
     fn near(actual: f64, expected: f64) {
-        assert!((actual - expected).abs() < 1e-9 * expected.abs().max(1.0), "{actual} instead of {expected}");
+        assert!(
+            (actual - expected).abs() < 1e-9 * expected.abs().max(1.0),
+            "got {actual}, expected {expected}"
+        );
     }
 
     #[test]

@@ -1,17 +1,17 @@
-//! Who the customers are: `configs/world/customers.toml`.
+//! Parameters of customers: `configs/world/customers.toml`.
 
 use serde::{Deserialize, Serialize};
 
 use super::check::parameters;
 
 parameters! {
-    /// The willingness curve (docs/mechanics/customers/participation.md).
+    /// The participation curve (docs/mechanics/customers/participation.md).
     pub struct Participation {
         /// Steepness of both halves of the curve.
         pub curve_gain: f64,
-        /// Price / budget in the middle of the lower half.
+        /// Price / budget at the center of the lower half.
         pub curve_left_center: f64,
-        /// Price / budget in the middle of the upper half.
+        /// Price / budget at the center of the upper half.
         pub curve_right_center: f64,
         /// Price / budget where the halves meet.
         pub curve_split: f64 where 0.0..=1.0,
@@ -31,7 +31,7 @@ parameters! {
     pub struct CustomerGeneration {
         /// Mean of the exponential part of the lower steepness.
         pub steepness_left_exp_scale: f64 where 0.0..=1e6,
-        /// Added to it.
+        /// Offset added to the exponential part.
         pub steepness_left_offset: f64 where 0.0..=1e6,
         /// Lower bound.
         pub steepness_left_min: f64 where 0.0..=1e6,
@@ -39,41 +39,41 @@ parameters! {
         pub steepness_left_max: f64 where 0.0..=1e6,
         /// Mean of the exponential part of the upper steepness.
         pub steepness_right_exp_scale: f64 where 0.0..=1e6,
-        /// Added to it.
+        /// Offset added to the exponential part.
         pub steepness_right_offset: f64 where 0.0..=1e6,
         /// Lower bound.
         pub steepness_right_min: f64 where 0.0..=1e6,
         /// Upper bound.
         pub steepness_right_max: f64 where 0.0..=1e6,
-        /// Widens the group's spread of budgets.
+        /// Factor on the standard deviation of a group's budgets.
         pub c_max_std_multiplier: f64 where 0.0..=1e6,
-        /// Least budget before and after drift, dollars a month.
+        /// Minimum budget before and after drift, dollars a month.
         pub c_max_min: f64 where 0.0..=1e6,
-        /// Least quality floor, before drift.
+        /// Lower bound of the minimum quality, before drift.
         pub q_min_min: f64 where 0.0..=1e6,
-        /// Least width of the quality band.
+        /// Minimum width of the quality band.
         pub q_range_min: f64 where 0.0..=1e6,
-        /// Least demand, units a day and seat.
+        /// Minimum demand, units a day and seat.
         pub usage_demand_min: f64 where 0.0..=1e6,
-        /// Least mean reply delay of a company, in days.
+        /// Minimum mean reply delay of an enterprise, in days.
         pub reply_delay_mean_min: f64 where 0.0..=1e6,
-        /// Spread of it as a share of the group's spread.
+        /// Its standard deviation as a share of the group's standard deviation.
         pub reply_delay_mean_noise_std_factor: f64 where 0.0..=1e6,
-        /// Least spread of the reply delay, in days.
+        /// Minimum standard deviation of the reply delay, in days.
         pub reply_delay_std_min: f64 where 0.0..=1e6,
-        /// Spread of the spread as a share of the group's.
+        /// Standard deviation of that, as a share of the group's.
         pub reply_delay_std_noise_std_factor: f64 where 0.0..=1e6,
-        /// Lower bound of the first bid as a share of the most a company would pay.
+        /// Lower bound of the first bid as a share of the highest acceptable price.
         pub initial_offer_factor_min: f64 where 0.0..=1e6,
-        /// Upper bound of it.
+        /// Its upper bound.
         pub initial_offer_factor_max: f64 where 0.0..=1e6,
-        /// Least number of turns a company takes part in.
+        /// Lower bound of the maximum number of turns of an enterprise.
         pub max_negotiation_turns_min: u32 where 0.0..=1e6,
         /// Lower bound.
         pub ads_quality_sensitivity_min: f64 where 0.0..=1e6,
         /// Lower bound.
         pub ads_return_sensitivity_min: f64 where 0.0..=1e6,
-        /// Spread of a period's usage rate as a share of the customer's demand.
+        /// Standard deviation of a period's usage rate as a share of the customer's demand.
         pub daily_usage_rate_std_fraction: f64 where 0.0..=1e6,
         /// Lower bound of the usage rate, units a day.
         pub daily_usage_rate_min: f64 where 0.0..=1e6,
@@ -86,68 +86,68 @@ parameters! {
         pub id: String,
         /// Name shown to the player.
         pub name: String,
-        /// What kind of people or companies these are.
+        /// Description of the people or enterprises in the group.
         pub description: String,
         /// Individuals or enterprises.
         pub segment: Segment,
-        /// Known from day 0.
+        /// Whether the group is known from day 0.
         pub initially_known: bool,
         /// Whether posts of the group weigh more.
         pub influencer: bool,
-        /// Mean floor of quality.
+        /// Mean of the minimum quality.
         pub q_min_mean: f64,
-        /// Its spread.
+        /// Its standard deviation.
         pub q_min_std: f64 where 0.0..=1e9,
         /// Mean width of the quality band.
         pub q_range_mean: f64,
-        /// Its spread.
+        /// Its standard deviation.
         pub q_range_std: f64 where 0.0..=1e9,
         /// Mean budget, dollars a month.
         pub c_max_mean: f64,
-        /// Its spread, before `c_max_std_multiplier`.
+        /// Its standard deviation, before `c_max_std_multiplier`.
         pub c_max_std: f64 where 0.0..=1e9,
         /// Mean demand, units a day.
         pub usage_demand_mean: f64 where 0.0..=1e6,
-        /// Its spread.
+        /// Its standard deviation.
         pub usage_demand_std: f64 where 0.0..=1e6,
-        /// Customers or accounts the market holds on day 0.
+        /// Customers or accounts in the market on day 0.
         pub base_market_cap: f64 where 0.0..=1e12,
         /// Growth of the market a year, as a share of the base.
         pub annual_cap_growth_rate: f64,
         /// Mean aversion to long contracts; shown as an estimate, otherwise without effect.
         pub lockin_penalty_mean: f64,
-        /// Its spread.
+        /// Its standard deviation.
         pub lockin_penalty_std: f64 where 0.0..=1e9,
-        /// Mean quality lost to ads of full strength.
+        /// Mean quality lost to ads at full strength.
         pub ads_quality_sensitivity_mean: f64,
-        /// Its spread.
+        /// Its standard deviation.
         pub ads_quality_sensitivity_std: f64 where 0.0..=1e9,
-        /// Mean revenue of ads of full strength, dollars a day and seat.
+        /// Mean revenue from ads at full strength, dollars a day and seat.
         pub ads_return_sensitivity_mean: f64,
-        /// Its spread.
+        /// Its standard deviation.
         pub ads_return_sensitivity_std: f64 where 0.0..=1e9,
-        /// Mean chance a month that a payment fails for good.
+        /// Mean monthly probability that a payment fails permanently.
         pub involuntary_churn_mean: f64,
-        /// Its spread.
+        /// Its standard deviation.
         pub involuntary_churn_std: f64 where 0.0..=1e9,
-        /// Share of a competitor's event that raises this group's expectations further.
+        /// Share of a competitor event that additionally raises this group's expectations.
         pub competitor_reactivity_q_bias: f64,
-        /// Fewest seats of a company.
+        /// Minimum seats of an enterprise.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub seat_count_min: Option<u32> where 1.0..=1e6,
-        /// Most seats of a company.
+        /// Maximum seats of an enterprise.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub seat_count_max: Option<u32> where 1.0..=1e6,
-        /// Mean reply delay of a company, in days.
+        /// Mean reply delay of an enterprise, in days.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub reply_delay_mean: Option<f64>,
-        /// Its spread.
+        /// Its standard deviation.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub reply_delay_std: Option<f64> where 0.0..=1e9,
-        /// Mean number of turns a company takes part in.
+        /// Mean of the maximum number of turns of an enterprise.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub max_negotiation_turns_mean: Option<f64>,
-        /// Its spread.
+        /// Its standard deviation.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub max_negotiation_turns_std: Option<f64> where 0.0..=1e9,
         /// Sensitivities to the economy; an absent dimension does not react.
@@ -165,7 +165,7 @@ parameters! {
 pub enum Segment {
     /// One person, one seat.
     Individual,
-    /// A company with many seats.
+    /// An organization with many seats.
     Enterprise,
 }
 
@@ -179,7 +179,7 @@ pub struct MacroBeta {
     /// Budget at a billing decision.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub willingness_to_pay: Option<f64>,
-    /// Speed of replies of a new company.
+    /// Reply speed of a new enterprise.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub deal_velocity: Option<f64>,
     /// Drift of seats.
@@ -221,7 +221,7 @@ pub struct IndividualDrift {
 pub struct Personas {
     /// Axes common to individuals.
     pub individual: IndividualPersona,
-    /// Axes common to companies.
+    /// Axes common to enterprises.
     pub enterprise: EnterprisePersona,
     /// Parts of addresses.
     pub email: EmailParts,
@@ -245,13 +245,13 @@ pub struct IndividualPersona {
     pub budget_factors: [f64; 2],
     /// Labels of budget.
     pub budget_labels: [String; 3],
-    /// Upper edges of the group's mean quality floor.
+    /// Upper edges of the group's mean minimum quality.
     pub quality_thresholds: [f64; 3],
     /// Labels of expectations.
     pub quality_labels: [String; 4],
 }
 
-/// Profile words of companies.
+/// Profile words of enterprises.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EnterprisePersona {
@@ -259,15 +259,15 @@ pub struct EnterprisePersona {
     pub experience: String,
     /// Levels of technical skill.
     pub tech_savvy: Vec<String>,
-    /// Seats from which the size is written with a plus.
+    /// Number of seats from which the size has a plus sign.
     pub size_plus_from_seats: u32,
-    /// Upper edges of the group's mean quality floor.
+    /// Upper edges of the group's mean minimum quality.
     pub quality_thresholds: [f64; 3],
     /// Labels of expectations.
     pub quality_labels: [String; 4],
 }
 
-/// Parts of company addresses (docs/mechanics/market/social/texts.md#addresses).
+/// Parts of enterprise addresses (docs/mechanics/market/social/texts.md#addresses).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EmailParts {
@@ -275,13 +275,13 @@ pub struct EmailParts {
     pub first_names: Vec<String>,
     /// 48 last names.
     pub last_names: Vec<String>,
-    /// 20 company domains.
+    /// 20 domain names.
     pub company_domains: Vec<String>,
     /// 6 top-level domains.
     pub domain_suffixes: Vec<String>,
 }
 
-/// Profile words of one group; the axes of the other segment are absent.
+/// Profile words of one group, without the axes of the other segment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GroupPersona {
@@ -294,16 +294,16 @@ pub struct GroupPersona {
     /// Work styles of individuals.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub work_style: Vec<String>,
-    /// Sizes of companies.
+    /// Sizes of enterprises.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub company_size: Vec<String>,
-    /// Cultures of companies.
+    /// Cultures of enterprises.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub culture: Vec<String>,
-    /// How companies decide.
+    /// Decision styles of enterprises.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub decision_style: Vec<String>,
-    /// What companies worry about.
+    /// Primary concerns of enterprises.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub primary_concern: Vec<String>,
 }

@@ -1,4 +1,4 @@
-//! Reading parameters: merge the shipped files with overrides, and say where a wrong value stands.
+//! Loading of parameters: merges the bundled files with overrides and locates invalid values.
 
 use std::fmt;
 use std::sync::OnceLock;
@@ -10,30 +10,30 @@ use super::names::{NAMING, name_in, named, nearest_keys, place_in};
 use super::{Params, check};
 use crate::identifiers::Group;
 
-/// A text that holds parameters, with the name people know it by.
+/// A text with parameters and its name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ParameterSource {
-    /// File name for messages, for instance `configs/world/market.toml`.
+    /// Name in error messages, for instance `configs/world/market.toml`.
     pub name: String,
     /// TOML text.
     pub text: String,
 }
 
-/// What is wrong with the parameters, and where.
+/// An invalid parameter and its location.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ParameterError {
-    /// File or option that holds the value.
+    /// File or option with the invalid value.
     pub source: String,
-    /// Line in the file, from 1, where it is known.
+    /// Line in the file, from 1, if it is known.
     pub line: Option<usize>,
-    /// Key as `table.key`, empty when the file as a whole is wrong.
+    /// Key as `table.key`; empty if the whole file is invalid.
     pub key: String,
-    /// What is wrong and what would be right.
+    /// The problem and the allowed values.
     pub problem: String,
 }
 
 impl ParameterError {
-    /// A text that cannot be read as TOML, or holds other keys and types than it should.
+    /// Creates an error for text that is not valid TOML or has wrong keys or types.
     pub fn of_toml(source: &str, text: &str, error: &toml::de::Error) -> ParameterError {
         ParameterError {
             source: source.to_owned(),
@@ -43,7 +43,7 @@ impl ParameterError {
         }
     }
 
-    /// A problem with a key, at its line in the text.
+    /// Creates an error for a key, with its line in the text.
     pub fn of_key(source: &str, text: &str, key: &str, problem: impl Into<String>) -> ParameterError {
         ParameterError {
             source: source.to_owned(),
@@ -78,7 +78,7 @@ macro_rules! shipped {
     };
 }
 
-/// The parameter files compiled into the program.
+/// Returns the parameter files included in the binary.
 pub fn shipped_sources() -> Vec<ParameterSource> {
     Vec::from(shipped![
         "run.toml",
@@ -97,24 +97,24 @@ pub fn shipped_sources() -> Vec<ParameterSource> {
 }
 
 impl Params {
-    /// The parameters as shipped; read once.
+    /// Returns the bundled parameters, which are parsed once.
     pub fn shipped() -> Params {
         static SHIPPED: OnceLock<Params> = OnceLock::new();
-        let read = || Params::load(&shipped_sources(), &[]).expect("the shipped parameters are tested");
+        let read = || Params::load(&shipped_sources(), &[]).expect("the bundled parameters are valid");
         SHIPPED.get_or_init(read).clone()
     }
 
-    /// Reads the base sources, which together hold every key once, and lays the overrides over them in order.
+    /// Merges the base sources, which together contain every key once, with the overrides in order.
     ///
     /// # Errors
-    /// The first wrong value: unreadable text, a table in two base sources, an unknown or missing key, a wrong
-    /// type, a value out of range, values that contradict each other.
+    /// The first problem: invalid TOML, a table in two base sources, an unknown or missing key, a wrong type,
+    /// a value out of range, or contradicting values.
     pub fn load(base: &[ParameterSource], overrides: &[ParameterSource]) -> Result<Params, ParameterError> {
         let mut merged = Table::new();
         for source in base {
             for (key, value) in parse(source)? {
                 if merged.insert(key.clone(), value).is_some() {
-                    return Err(locate(&[source], &key, "this table stands in another file too"));
+                    return Err(locate(&[source], &key, "this table is also in another file"));
                 }
             }
         }
@@ -127,10 +127,10 @@ impl Params {
     }
 }
 
-/// The parameters of tables that hold every key, if their values are allowed.
+/// Creates parameters from complete tables and checks their values.
 ///
 /// # Errors
-/// (key, problem) of the first that is not.
+/// Key and problem of the first invalid value.
 pub(super) fn checked(tables: Table) -> Result<Params, (String, String)> {
     let with_names = |(key, problem): (String, String)| (named(&tables, &key), problem);
     let whole = Value::Table(tables.clone());
@@ -147,13 +147,13 @@ fn parse(source: &ParameterSource) -> Result<Table, ParameterError> {
 
 fn read(tables: Value) -> Result<Params, (String, String)> {
     serde_path_to_error::deserialize(tables).map_err(|error| {
-        // `group[0].c_max_mean`: elements are parts of the key, as they are everywhere else.
+        // List elements in paths of the reader, such as `group[0].c_max_mean`, become key parts as everywhere else.
         let key = error.path().to_string().replace('[', ".").replace(']', "");
         (key, in_plain_words(error.inner().message()))
     })
 }
 
-/// A message of the reader without the names of types in this code.
+/// Returns an error message of the TOML reader without Rust type names.
 fn in_plain_words(message: &str) -> String {
     let Some((found, expected)) = message.rsplit_once(", expected ") else { return message.to_owned() };
     let words = match expected {
@@ -167,12 +167,12 @@ fn in_plain_words(message: &str) -> String {
     format!("{found}, expected {words}")
 }
 
-/// Lays `above` over `below`: tables are merged key by key, elements of lists are found by their names, everything else is
-/// replaced.
+/// Merges `above` into `below`: tables are merged key by key, list elements are found by name, and other
+/// values are replaced.
 ///
 /// # Errors
-/// (key, problem) when a key does not exist below, for an override never adds a parameter; or when it is a table or a list
-/// and the value is none.
+/// Key and problem if a key does not exist in `below`, because an override never adds a parameter, or if the
+/// value of a table or list is neither.
 pub fn override_table(below: &mut Table, above: Table) -> Result<(), (String, String)> {
     lay_over(below, above).map_err(|Misfit { key, kind }| {
         let problem = match kind {
@@ -196,19 +196,19 @@ pub fn override_table(below: &mut Table, above: Table) -> Result<(), (String, St
     })
 }
 
-/// A value that cannot be laid over what is there.
+/// An override that does not fit the existing value.
 struct Misfit {
     key: String,
     kind: MisfitKind,
 }
 
-/// What is there.
+/// The existing value.
 enum MisfitKind {
-    /// Nothing.
+    /// No value.
     Unknown,
-    /// A table, with this part.
+    /// A table; one of its keys.
     Table(String),
-    /// A list, with this element.
+    /// A list; one of its elements.
     List(String),
     /// A single value.
     Single,
@@ -261,7 +261,7 @@ fn replace(slot: &mut Value, value: Value) -> Result<(), Misfit> {
     }
 }
 
-/// An error at the place where the first of `sources` that holds `key` has it.
+/// Creates an error at the location of `key` in the first of `sources` that contains it.
 fn locate(sources: &[&ParameterSource], key: &str, problem: &str) -> ParameterError {
     let place = sources.iter().find_map(|source| line_of_key(&source.text, key).map(|line| (source, line)));
     ParameterError {
@@ -278,8 +278,8 @@ fn line_of(text: &str, offset: usize) -> usize {
     text[..offset.min(text.len())].matches('\n').count() + 1
 }
 
-/// Line of the deepest part of a dotted key that stands in the text; elements of lists have their names, or are numbered from
-/// 0.
+/// Returns the line of the deepest part of a dotted key that is in the text. List elements have names or are
+/// numbered from 0.
 pub fn line_of_key(text: &str, key: &str) -> Option<usize> {
     let document = toml::de::DeTable::parse(text).ok()?;
     let mut line = None;
@@ -306,7 +306,6 @@ pub fn line_of_key(text: &str, key: &str) -> Option<usize> {
     line
 }
 
-/// What an entry of a list is called.
 fn name_of(entry: &DeValue<'_>) -> Option<String> {
     let DeValue::Table(fields) = entry else { return None };
     NAMING.iter().find_map(|field| match fields.get(*field)?.get_ref() {
@@ -322,7 +321,7 @@ mod tests {
 
     fn with_override(text: &str) -> ParameterError {
         let over = ParameterSource { name: "scenario.toml".to_owned(), text: text.to_owned() };
-        Params::load(&shipped_sources(), &[over]).expect_err("the override is wrong")
+        Params::load(&shipped_sources(), &[over]).expect_err("the override is invalid")
     }
 
     #[test]
@@ -394,7 +393,7 @@ mod tests {
     fn two_files_with_one_table_are_refused() {
         let mut sources = shipped_sources();
         sources.push(ParameterSource { name: "more.toml".to_owned(), text: "[quality]\nx = 1".to_owned() });
-        let error = Params::load(&sources, &[]).expect_err("a table stands twice");
+        let error = Params::load(&sources, &[]).expect_err("a table is defined twice");
         assert_eq!((error.source.as_str(), error.key.as_str()), ("more.toml", "quality"));
     }
 }

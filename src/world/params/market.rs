@@ -1,9 +1,9 @@
-//! The market: `configs/world/market.toml`.
+//! Parameters of the market: `configs/world/market.toml`.
 
 use super::check::parameters;
 
 parameters! {
-    /// Factors of the weekday and of the day of the month.
+    /// Calendar factors.
     pub struct Calendar {
         /// Factor of leads and usage by day mod 7.
         pub weekly: [f64; 7] where 0.0..=1e6,
@@ -11,15 +11,15 @@ parameters! {
         pub monthly: [f64; 30] where 0.0..=1e6,
     }
 
-    /// Silent rushes of demand (docs/mechanics/market/surges.md).
+    /// Demand surges (docs/mechanics/market/surges.md).
     pub struct DemandSurge {
-        /// Chance of a surge a day.
+        /// Daily probability of a surge.
         pub probability: f64 where 0.0..=1.0,
         /// Shortest surge, in days.
         pub duration_days_low: u32 where 1.0..=10_000.0,
         /// One above the longest surge, in days.
         pub duration_days_high_exclusive: u32 where 1.0..=10_001.0,
-        /// Least factor on leads.
+        /// Minimum factor on leads.
         pub multiplier_base: f64 where 0.0..=1e6,
         /// Width of the uniform part of the factor.
         pub multiplier_range: f64 where 0.0..=1e6,
@@ -27,7 +27,7 @@ parameters! {
 
     /// Leads and channel yields (docs/mechanics/market/leads.md).
     pub struct Leads {
-        /// Dollars a lead, whatever becomes of it.
+        /// Dollars per lead, whether or not it signs up.
         pub lead_acquisition_cost: f64 where 0.0..=1e9,
         /// Channel yields are leads per this many dollars.
         pub ad_spend_unit: f64 where POSITIVE..=1e12,
@@ -35,13 +35,13 @@ parameters! {
         pub saturation_base: f64,
         /// Exponent of the share of the market that is taken.
         pub saturation_exponent: f64,
-        /// Least saturation factor.
+        /// Minimum saturation factor.
         pub saturation_floor: f64,
         /// Days of a year of market growth.
         pub days_per_year: f64 where POSITIVE..=1e6,
-        /// Spread of the monthly change of a yield, as a share of it.
+        /// Standard deviation of the monthly change of a yield, as a share of it.
         pub monthly_channel_noise_fraction: f64 where 0.0..=100.0,
-        /// Least yield.
+        /// Minimum yield.
         pub monthly_channel_value_min: f64,
         /// Days between two changes.
         pub monthly_channel_noise_interval_days: u32 where 1.0..=100_000.0,
@@ -53,7 +53,7 @@ parameters! {
         pub base_rep_per_customer: f64,
         /// Weight of negative satisfaction.
         pub negative_satisfaction_multiplier: f64,
-        /// Smaller groups count as this many.
+        /// Minimum group size in the calculation.
         pub min_group_size: u32,
         /// Smaller changes are dropped.
         pub daily_delta_min_abs: f64,
@@ -61,7 +61,7 @@ parameters! {
         pub reputation_clamp_min: f64 where 0.0..=1.0,
         /// Upper clamp.
         pub reputation_clamp_max: f64 where 0.0..=1.0,
-        /// Least reputation after a write.
+        /// Minimum reputation after a write.
         pub reputation_floor: f64 where 0.0..=1.0,
         /// Share of a change that reaches other groups, times their weight.
         pub cross_group_spillover_factor: f64,
@@ -73,31 +73,31 @@ parameters! {
         pub cancel_damage_noise_offset: f64,
         /// Growth of the damage with squared negative satisfaction.
         pub cancel_negative_satisfaction_coef: f64,
-        /// Smaller groups count as this many in event damage.
+        /// Minimum group size in the calculation of event damage.
         pub event_scale_min_group_size: u32,
     }
 
-    /// Competitor events and their echo in the press (docs/mechanics/market/competitors.md).
+    /// Competitor events and their press coverage (docs/mechanics/market/competitors.md).
     pub struct Competitor {
-        /// Whether the market has no competitors.
+        /// Whether competitor events are disabled.
         pub competitor_events_disabled: bool,
         /// Mean days between events in the second half of a run.
         pub competitor_event_mean_interval: f64 where POSITIVE..=1e9,
-        /// Fewest days between events.
+        /// Minimum days between events.
         pub competitor_event_min_interval: f64 where 0.0..=1e9,
-        /// Stretches the mean interval in the first half.
+        /// Factor on the mean interval in the first half.
         pub first_half_interval_multiplier: f64,
-        /// Stretches the least interval in the first half.
+        /// Factor on the minimum interval in the first half.
         pub first_half_min_interval_multiplier: f64,
         /// The first half ends at total days divided by this.
         pub first_half_divisor: u32 where 1.0..=1e9,
-        /// Location of the log-normal size.
+        /// Mean of the logarithm of the size.
         pub competitor_event_boost_mu: f64,
-        /// Spread of the log-normal size.
+        /// Standard deviation of the logarithm of the size.
         pub competitor_event_boost_sigma: f64 where 0.0..=100.0,
-        /// Least size before scaling.
+        /// Minimum size before scaling.
         pub competitor_event_boost_min: f64 where 0.0..=1e6,
-        /// Largest size before scaling.
+        /// Maximum size before scaling.
         pub competitor_event_boost_max: f64 where 0.0..=1e6,
         /// Scale of sizes at the start of a run.
         pub competitor_event_magnitude_scale_min: f64 where 0.0..=1e6,
@@ -109,23 +109,23 @@ parameters! {
         pub magnitude_ramp_end_day_min: u32,
         /// No events in the last days of a run.
         pub competitor_event_late_cutoff_days: u32 where 0.0..=1e9,
-        /// Least share of our unreleased improvements that a rival copies.
+        /// Minimum share of the shared bank that a competitor copies.
         pub competitor_feedback_u_min: f64 where 0.0..=1.0,
-        /// Largest share.
+        /// Maximum share.
         pub competitor_feedback_u_max: f64 where 0.0..=1.0,
-        /// Least share copied of a group's targeted development.
+        /// Minimum share copied of a group's targeted development.
         pub competitor_segment_drain_u_min: f64 where 0.0..=1.0,
-        /// Largest share.
+        /// Maximum share.
         pub competitor_segment_drain_u_max: f64 where 0.0..=1.0,
-        /// Floor of both banks.
+        /// Minimum of both banks.
         pub bank_min: f64,
         /// Days after an event on which the press writes about it.
         pub competitor_event_post_days: u32 where 0.0..=10_000.0,
         /// Press posts a day.
         pub competitor_event_posts_per_day: u32 where 0.0..=1_000.0,
-        /// Least misjudgement of the size by the press, as a share.
+        /// Minimum error of the press about the size, as a factor.
         pub competitor_post_boost_noise_min: f64,
-        /// Largest misjudgement.
+        /// Maximum error.
         pub competitor_post_boost_noise_max: f64,
         /// Upper edge of minor events.
         pub competitor_severity_minor_max: f64,
@@ -145,9 +145,9 @@ parameters! {
         pub competitor_post_likes_ratio: f64,
         /// Shares per view.
         pub competitor_post_shares_ratio: f64,
-        /// Number of points of view such posts are written from.
+        /// Number of points of view for such posts.
         pub post_perspective_count: u32 where 1.0..=255.0,
-        /// Names of the rivals.
+        /// Names of the competitors.
         pub competitor_names: Vec<String>,
     }
 
@@ -159,7 +159,7 @@ parameters! {
         pub global_q_bias_drift: f64,
         /// Days between two applications of drift.
         pub interval_days: u32 where 1.0..=100_000.0,
-        /// Days that one application stands for.
+        /// Days of drift per application.
         pub days_per_application: u32 where 0.0..=100_000.0,
         /// Lower bound of a drifting budget, dollars a month.
         pub individual_c_max_min: f64,
@@ -177,7 +177,7 @@ parameters! {
     pub struct MacroEconomy {
         /// Index on day 0.
         pub macro_pmi_initial: f64 where 0.0..=100_000.0,
-        /// Centre of the cycle.
+        /// Center of the cycle.
         pub macro_pmi_long_run_mean: f64 where 0.0..=100_000.0,
         /// Amplitude of the cycle.
         pub macro_pmi_cycle_amplitude: f64 where 0.0..=100_000.0,
@@ -201,37 +201,37 @@ parameters! {
         pub macro_pmi_publication_delay_days: u32 where 0.0..=100_000.0,
         /// Decimals of a published reading.
         pub published_pmi_decimals: u32 where 0.0..=12.0,
-        /// Index without effect.
+        /// Neutral index.
         pub neutral_pmi: f64,
-        /// Points of the index that scale a sensitivity.
+        /// Points of the index per unit of sensitivity.
         pub pmi_scale: f64 where POSITIVE..=1e6,
         /// Factor at the neutral index.
         pub multiplier_neutral: f64,
-        /// Least factor.
+        /// Minimum factor.
         pub multiplier_min: f64,
-        /// Least reading called strong expansion.
+        /// Minimum reading of strong expansion.
         pub trend_strong_expansion_min: f64,
-        /// Least reading called expansion.
+        /// Minimum reading of expansion.
         pub trend_expansion_min: f64,
-        /// Least reading called neutral.
+        /// Minimum reading of a neutral economy.
         pub trend_neutral_min: f64,
-        /// Least reading called contraction.
+        /// Minimum reading of contraction.
         pub trend_contraction_min: f64,
-        /// Least reading called a peak when it no longer rises.
+        /// Minimum reading of a peak, if it no longer rises.
         pub phase_peak_min_pmi: f64,
         /// Readings below it are a trough unless they fall.
         pub phase_trough_below_pmi: f64,
-        /// Fewest days between two rounds of posts about the economy.
+        /// Minimum days between two rounds of posts about the economy.
         pub macro_social_post_interval_min: u32 where 1.0..=100_000.0,
-        /// Most days.
+        /// Maximum days.
         pub macro_social_post_interval_max: u32 where 1.0..=100_000.0,
-        /// Fewest posts of a round.
+        /// Minimum posts of a round.
         pub macro_social_post_count_min: u32 where 0.0..=1_000.0,
-        /// Most posts of a round.
+        /// Maximum posts of a round.
         pub macro_social_post_count_max: u32 where 0.0..=1_000.0,
-        /// Number of perspectives such posts are written from.
+        /// Number of points of view for such posts.
         pub post_perspective_count: u32 where 1.0..=255.0,
-        /// Fewest views of such a post.
+        /// Minimum views of such a post.
         pub macro_post_views_base: f64,
         /// Likes per view.
         pub macro_post_likes_ratio: f64,
@@ -241,7 +241,7 @@ parameters! {
 }
 
 impl Calendar {
-    /// Factor of the leads of a day.
+    /// Returns the factor of the leads of a day.
     pub fn of_leads(&self, day: u32) -> f64 {
         self.weekly[(day % 7) as usize] * self.monthly[(day % 30) as usize]
     }

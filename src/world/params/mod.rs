@@ -1,7 +1,7 @@
-//! Every number of the world: read from `configs/world/*.toml`, checked once, immutable afterwards.
+//! Parameters of the world: loaded from `configs/world/*.toml`, checked once, then immutable.
 //!
-//! The pages of `docs/mechanics/README.md` explain every key. A scenario is a small file that overrides
-//! some of them; the merged result has a digest that every run records.
+//! The pages of `docs/mechanics/README.md` explain every key. A scenario is a small file that overrides some
+//! of them. The merged result has a digest that every run records.
 
 mod change;
 mod check;
@@ -37,8 +37,8 @@ use self::check::parameters;
 use super::fault::Fault;
 use super::identifiers::{ByChannel, ByGroup, Channel, Group};
 
-/// Keys that were added after runs had been recorded: table, key, and as JSON the value that keeps the earlier behaviour,
-/// which is the default.
+/// Keys that were added after runs had been recorded: table, key, and, as JSON, the value with the earlier
+/// behavior, which is the default.
 const ADDED_KEYS: [(&str, &str, &str); 1] = [("fidelity", "insight_noise", "\"independent\"")];
 
 parameters! {
@@ -50,11 +50,11 @@ parameters! {
         pub initial: Initial,
         /// Limits of tools, queries and texts.
         pub limits: Limits,
-        /// Which form odd mechanics take.
+        /// Alternative forms of mechanics.
         pub fidelity: Fidelity,
         /// Which recorded series are replayed.
         pub series: SeriesChoice,
-        /// The willingness curve.
+        /// The participation curve.
         pub participation: Participation,
         /// Bounds of a new customer's traits.
         pub customer_generation: CustomerGeneration,
@@ -78,13 +78,13 @@ parameters! {
         pub issues: Issues,
         /// Billing.
         pub billing: Billing,
-        /// Floors of discounts.
+        /// Minimum discounts.
         pub promotions: Promotions,
         /// Failed payments.
         pub involuntary_churn: InvoluntaryChurn,
         /// Weekday and day of the month.
         pub calendar: Calendar,
-        /// Rushes of demand.
+        /// Demand surges.
         pub demand_surge: DemandSurge,
         /// Leads and channel yields.
         pub leads: Leads,
@@ -102,9 +102,9 @@ parameters! {
         pub ceo_posts: CeoPosts,
         /// Negotiations.
         pub enterprise: EnterpriseParams,
-        /// Finding groups.
+        /// Discovery of groups.
         pub market_research: MarketResearch,
-        /// Levels of knowledge 1..=5.
+        /// Study levels 1..=5.
         pub info_level: Vec<InfoLevel>,
         /// Studies of groups.
         pub group_research: GroupResearch,
@@ -112,14 +112,13 @@ parameters! {
         pub group: Vec<GroupParams>,
         /// The five channels, in their fixed order.
         pub channel: Vec<ChannelParams>,
-        /// Leads a day in a group per active subscription of the source group.
+        /// Leads a day in a group per active subscription of the source group (word of mouth).
         pub referral_leads_per_subscriber_day: BTreeMap<String, Vec<f64>> where 0.0..=1e6,
         /// Weight of a change of reputation of the source group on a group.
         pub reputation_influence: BTreeMap<String, Vec<f64>> where 0.0..=f64::INFINITY,
         /// Words of customer profiles.
         pub personas: Personas,
-        /// The mechanism that is wrong on purpose, in a debug run that asks for it; in no table, so that nothing but the start of a
-        /// run sets it.
+        /// The seeded fault of a debug run. It is in no table, so it can be set only at the start of a run.
         #[serde(skip)]
         pub fault: Option<Fault>,
     }
@@ -130,18 +129,18 @@ parameters! {
         pub id: String,
         /// Name shown to the player.
         pub name: String,
-        /// Leads a day for 1,000 dollars a day by group, at the start of a run.
+        /// Leads a day per 1,000 dollars a day by group, at the start of a run.
         pub leads_per_1000_dollars: BTreeMap<String, f64> where 0.0..=1e9,
     }
 }
 
 impl Params {
-    /// The parameters of a group.
+    /// Returns the parameters of a group.
     pub fn group(&self, group: Group) -> &GroupParams {
         &self.group[group.index()]
     }
 
-    /// Starting yields: leads a day for 1,000 dollars a day.
+    /// Returns the yields at the start of a run: leads a day per 1,000 dollars a day.
     pub fn starting_yields(&self) -> ByChannel<ByGroup<f64>> {
         ByChannel::from_fn(|channel: Channel| {
             let yields = &self.channel[channel.index()].leads_per_1000_dollars;
@@ -149,58 +148,58 @@ impl Params {
         })
     }
 
-    /// Referral rate from a source group to a target group, leads a day and subscription.
+    /// Returns the word-of-mouth rate from a source group to a target group, leads a day and subscription.
     pub fn referral_rate(&self, source: Group, target: Group) -> f64 {
         self.referral_leads_per_subscriber_day[source.id()][target.index()]
     }
 
-    /// Weight of a change of reputation of the source on the target.
+    /// Returns the weight of the source's reputation changes for the target.
     pub fn reputation_weight(&self, source: Group, target: Group) -> f64 {
         self.reputation_influence[source.id()][target.index()]
     }
 
-    /// The capacity tier with this number, 0..=7.
+    /// Returns the capacity tier with this number, 0..=7.
     pub fn capacity(&self, tier: u8) -> &CapacityTier {
         &self.capacity_tier[usize::from(tier)]
     }
 
-    /// The model tier with this number, 1..=5.
+    /// Returns the model tier with this number, 1..=5.
     pub fn model(&self, tier: u8) -> &ModelTier {
         &self.model_tier[usize::from(tier) - 1]
     }
 
-    /// The level of knowledge with this number, 1..=5.
+    /// Returns the study level with this number, 1..=5.
     pub fn level(&self, level: u8) -> &InfoLevel {
         &self.info_level[usize::from(level) - 1]
     }
 
-    /// The R&D tier with this number, 1..=20.
+    /// Returns the R&D tier with this number, 1..=20.
     pub fn research(&self, tier: u8) -> &ResearchTier {
         &self.research_tier[usize::from(tier) - 1]
     }
 
-    /// Digest of the effective parameters: 16 hexadecimal digits of blake3 over their canonical JSON, and the number of the
-    /// fault if there is one. A key of `ADDED_KEYS` at its earlier behaviour is left out.
+    /// Returns the digest of the effective parameters: 16 hexadecimal digits of BLAKE3 over their canonical JSON, and
+    /// the number of the fault if there is one. Keys of `ADDED_KEYS` with their earlier behavior are left out.
     ///
-    /// A run records it, and is never silently continued under other parameters.
+    /// A run records it, so that it is never continued silently with other parameters.
     pub fn digest(&self) -> String {
         self.digest_without(|value, earlier| value == earlier)
     }
 
-    /// The digest that versions without the keys of `ADDED_KEYS` gave these parameters.
+    /// Returns the digest that versions without the keys of `ADDED_KEYS` computed for these parameters.
     pub fn earlier_digest(&self) -> String {
         self.digest_without(|_, _| true)
     }
 
-    /// The digest without the keys of `ADDED_KEYS` for which `is_left_out` returns true, given their value and that of their
-    /// earlier behaviour.
+    /// Returns the digest without the keys of `ADDED_KEYS` for which `is_left_out` returns true, given their
+    /// value and the value of the earlier behavior.
     fn digest_without(&self, is_left_out: impl Fn(&Json, &Json) -> bool) -> String {
         let tables = serde_json::to_value(self).expect("parameters hold only strings and finite numbers");
         digest_of(tables, self.fault, &ADDED_KEYS, is_left_out)
     }
 }
 
-/// The digest of parameters as JSON, without those of the added keys for which `is_left_out` returns true.
+/// Returns the digest of parameters as JSON, without the added keys for which `is_left_out` returns true.
 fn digest_of(
     mut tables: Json,
     fault: Option<Fault>,
@@ -208,7 +207,7 @@ fn digest_of(
     is_left_out: impl Fn(&Json, &Json) -> bool,
 ) -> String {
     for (table, key, earlier) in added {
-        let earlier = serde_json::from_str(earlier).expect("the list holds JSON");
+        let earlier = serde_json::from_str(earlier).expect("ADDED_KEYS contains valid JSON");
         let table = tables.get_mut(table).and_then(Json::as_object_mut);
         if let Some(table) = table
             && table.get(*key).is_some_and(|value| is_left_out(value, &earlier))
@@ -228,7 +227,7 @@ mod tests {
     #[test]
     fn added_keys_leave_the_digest_of_earlier_runs() {
         let shipped = Params::shipped();
-        assert_eq!(shipped.digest(), "a9623642a136c0a4", "the digest that recorded runs name");
+        assert_eq!(shipped.digest(), "a9623642a136c0a4", "the digest in recorded runs");
         let mut release = shipped.clone();
         release.fidelity.insight_noise = InsightNoise::Release;
         assert_ne!(release.digest(), shipped.digest());
@@ -238,7 +237,7 @@ mod tests {
             assert_eq!(
                 tables[table][key].to_string(),
                 earlier,
-                "{table}.{key}: the default is the earlier behaviour"
+                "{table}.{key}: the default is the earlier behavior"
             );
         }
     }

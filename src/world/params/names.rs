@@ -1,15 +1,15 @@
-//! What parameters are called: `table.key`. Elements of lists have names of their own: `group.S1.c_max_mean`,
-//! `capacity_tier.3.capacity_units`, `reputation_influence.S1.S3`, or else their place from 0.
+//! Names of parameters: `table.key`. List elements have names, as in `group.S1.c_max_mean`,
+//! `capacity_tier.3.capacity_units` and `reputation_influence.S1.S3`, or their index from 0.
 
 use toml::{Table, Value};
 
 use super::super::identifiers::Group;
 use novamind_base::nearest;
 
-/// Fields that name the entries of a list.
+/// Fields that name list elements.
 pub(super) const NAMING: [&str; 3] = ["id", "tier", "level"];
 
-/// What an element of a list is called.
+/// Returns the name of a list element.
 pub(super) fn name_in(list: &[Value], at: usize) -> String {
     let own = NAMING.iter().find_map(|field| match list.get(at)?.get(field)? {
         Value::String(id) => Some(id.clone()),
@@ -20,18 +20,17 @@ pub(super) fn name_in(list: &[Value], at: usize) -> String {
     own.or_else(of_group).unwrap_or_else(|| at.to_string())
 }
 
-/// Where the element of a list with a name stands.
+/// Returns the index of a list element with a given name.
 pub(super) fn place_in(list: &[Value], name: &str) -> Option<usize> {
     (0..list.len()).find(|at| name_in(list, *at) == name)
 }
 
-/// Whether a list holds a number for each group.
 fn is_by_group(list: &[Value]) -> bool {
     let is_number = |value: &Value| matches!(value, Value::Float(_) | Value::Integer(_));
     list.len() == Group::COUNT && list.iter().all(is_number)
 }
 
-/// A key whose elements of lists are counted from 0, with their names instead.
+/// Returns a key with list indexes replaced by element names.
 pub(super) fn named(tables: &Table, counted: &str) -> String {
     let mut parts = counted.split('.');
     let Some(first) = parts.next() else { return String::new() };
@@ -48,7 +47,7 @@ pub(super) fn named(tables: &Table, counted: &str) -> String {
     key
 }
 
-/// The value with a name: of a single parameter, of a list, or of a table.
+/// Returns the value with this name: a parameter, a list or a table.
 pub(super) fn value_at<'a>(tables: &'a Table, key: &str) -> Option<&'a Value> {
     let mut parts = key.split('.');
     let first = tables.get(parts.next()?)?;
@@ -58,7 +57,7 @@ pub(super) fn value_at<'a>(tables: &'a Table, key: &str) -> Option<&'a Value> {
     })
 }
 
-/// Names of all single parameters.
+/// Returns the names of all parameters.
 pub(crate) fn keys(tables: &Table) -> Vec<String> {
     let mut all = Vec::new();
     tables.iter().for_each(|(key, value)| collect(key.clone(), value, &mut all));
@@ -78,7 +77,7 @@ fn collect(path: String, value: &Value, all: &mut Vec<String>) {
     }
 }
 
-/// The full keys that look most like one that does not exist, best first: those that end as it does come first.
+/// Returns the keys most similar to one that does not exist, best first. Keys with the same suffix come first.
 pub(super) fn nearest_keys(tables: &Table, key: &str) -> Vec<String> {
     let all = keys(tables);
     let last = |key: &str| key.rsplit('.').next().unwrap_or_default().to_owned();
@@ -87,14 +86,14 @@ pub(super) fn nearest_keys(tables: &Table, key: &str) -> Vec<String> {
     let ends_alike = |one: &&String| !is_place && last(one) == own;
     let alike: Vec<&str> = all.iter().filter(ends_alike).map(String::as_str).collect();
     let near = match alike.is_empty() {
-        // However far it is: one that ends in the same name is what was meant.
+        // Regardless of distance: the user probably meant a key with the same last part.
         false => by_distance(key, alike),
         true => nearest(key, all.iter().map(String::as_str)),
     };
     near.into_iter().map(str::to_owned).collect()
 }
 
-/// Longest key, in bytes, whose distance from others is measured.
+/// Longest key, in bytes, for which distances are computed.
 const LONGEST_KEY: usize = 200;
 
 fn by_distance<'a>(key: &str, mut alike: Vec<&'a str>) -> Vec<&'a str> {

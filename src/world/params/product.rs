@@ -1,4 +1,4 @@
-//! The product: `configs/world/product.toml`.
+//! Parameters of the product: `configs/world/product.toml`.
 
 use super::check::parameters;
 
@@ -7,9 +7,9 @@ parameters! {
     pub struct Quality {
         /// Product quality before any improvement.
         pub base_product_quality: f64 where POSITIVE..=100.0,
-        /// Quality bonus at relationship 1, malus at 0.
+        /// Quality bonus at relationship 1, penalty at 0.
         pub relationship_quality_bonus_max: f64,
-        /// Relationship without bonus or malus.
+        /// Relationship without bonus or penalty.
         pub relationship_neutral_point: f64,
         /// Scales the distance from the neutral point.
         pub relationship_scale: f64,
@@ -29,11 +29,11 @@ parameters! {
         pub quota_factor_min: f64,
         /// Upper clamp of quota / demand.
         pub quota_factor_max: f64,
-        /// A lead misjudges quality by a uniform factor from here.
+        /// Minimum of the uniform factor by which a lead misjudges quality.
         pub initial_decision_noise_min: f64 where 0.0..=100.0,
-        /// Up to here.
+        /// Maximum of that factor.
         pub initial_decision_noise_max: f64 where 0.0..=100.0,
-        /// Least budget after the group's drift was added, dollars a month.
+        /// Minimum budget after the group's drift was added, dollars a month.
         pub read_time_c_max_min: f64,
         /// Lower clamp of quality in negotiations.
         pub negotiation_quality_min: f64,
@@ -53,9 +53,9 @@ parameters! {
         pub targeted_dev_improvement_coef: f64,
         /// Dollars a day that scale targeted development.
         pub targeted_dev_spend_scale: f64 where POSITIVE..=1e12,
-        /// Least duration of an R&D project, in days.
+        /// Minimum duration of an R&D project, in days.
         pub rd_min_duration_days: u32 where 1.0..=100_000.0,
-        /// Least gain of an R&D project.
+        /// Minimum gain of an R&D project.
         pub rd_min_quality_boost: f64,
         /// Decimals of the gain in the result of the tool.
         pub rd_report_decimals: u32 where 0.0..=12.0,
@@ -63,27 +63,27 @@ parameters! {
 
     /// Service health (`docs/mechanics/product/service.md`).
     pub struct Operations {
-        /// Chance of an outage a day, without spending.
+        /// Daily probability of an outage, without spending.
         pub base_outage_prob: f64 where 0.0..=1.0,
-        /// Dollars a day of operations that divide it by e.
+        /// Operations in dollars a day that divide this probability by e.
         pub ops_outage_reduction_scale: f64 where POSITIVE..=1e12,
-        /// Least chance of an outage a day, before overload.
+        /// Minimum daily probability of an outage, before overload.
         pub ops_outage_min_prob: f64 where 0.0..=1.0,
-        /// Growth of the chance per unit of overload.
+        /// Growth of the probability per unit of overload.
         pub outage_overload_factor: f64,
-        /// Overload begins above this utilisation.
+        /// Overload begins above this utilization.
         pub overload_reference_utilization: f64,
         /// Latency (95th percentile) without overload, in milliseconds.
         pub p95_base_ms: f64,
         /// Milliseconds added per unit of overload.
         pub p95_overload_factor: f64,
-        /// Spread of the latency, in milliseconds.
+        /// Standard deviation of the latency, in milliseconds.
         pub p95_noise_std: f64,
         /// Share of failed requests without overload.
         pub error_rate_base: f64,
         /// Added per unit of overload.
         pub error_rate_overload_factor: f64,
-        /// Spread of the error rate.
+        /// Standard deviation of the error rate.
         pub error_rate_noise_std: f64,
         /// Lower clamp of the error rate.
         pub error_rate_min: f64,
@@ -93,9 +93,9 @@ parameters! {
         pub downtime_minutes_choices: [u32; 3] where 0.0..=100_000.0,
         /// Their probabilities.
         pub downtime_minutes_probabilities: [f64; 3] where 0.0..=1.0,
-        /// Old usage rows go on days divisible by this.
+        /// Old usage rows are deleted on days divisible by this.
         pub daily_usage_prune_every_days: u32 where 1.0..=100_000.0,
-        /// Days of usage that stay.
+        /// Days of usage that are kept.
         pub daily_usage_keep_days: u32 where 1.0..=100_000.0,
     }
 
@@ -141,11 +141,11 @@ parameters! {
         pub cost: u32 where 0.0..=4e9,
         /// Mean duration before truncation, in days.
         pub mean_days: f64 where 0.0..=100_000.0,
-        /// Spread of the duration, in days.
+        /// Standard deviation of the duration, in days.
         pub std_days: f64 where 0.0..=1e6,
         /// Mean gain.
         pub mean_quality_boost: f64,
-        /// Spread of the gain.
+        /// Standard deviation of the gain.
         pub std_quality_boost: f64 where 0.0..=1e6,
     }
 }

@@ -1,4 +1,4 @@
-//! Staying and leaving: `configs/world/retention.toml`.
+//! Parameters of retention: `configs/world/retention.toml`.
 
 use super::check::parameters;
 
@@ -11,27 +11,27 @@ parameters! {
 
     /// Support issues (`docs/mechanics/retention/issues.md`).
     pub struct Issues {
-        /// Chance a day of an issue at full satisfaction.
+        /// Daily probability of an issue at full satisfaction.
         pub base_issue_rate: f64,
-        /// Added per point of missing satisfaction.
+        /// Increase per point of missing satisfaction.
         pub issue_quality_factor: f64,
-        /// Added on a day with an outage.
+        /// Increase on a day with an outage.
         pub issue_outage_factor: f64,
         /// Satisfaction that counts as full.
         pub issue_satisfaction_reference: f64,
-        /// Lower clamp of the chance.
+        /// Lower clamp of the probability.
         pub issue_probability_min: f64 where 0.0..=1.0,
-        /// Upper clamp of the chance.
+        /// Upper clamp of the probability.
         pub issue_probability_max: f64 where 0.0..=1.0,
         /// Issues resolved a day without spending.
         pub issue_resolution_base_rate: f64 where 0.0..=1e9,
         /// Issues of individuals resolved per dollar of operations.
         pub individual_ops_scale: f64 where 0.0..=1e6,
-        /// Issues of companies resolved per dollar of operations.
+        /// Issues of enterprises resolved per dollar of operations.
         pub enterprise_ops_scale: f64 where 0.0..=1e6,
-        /// A solution within this many open days pleases.
+        /// A resolution within this many open days raises the relationship.
         pub quick_resolution_threshold_days: u32,
-        /// Open days that earn the larger gain.
+        /// Open days up to which the gain is larger.
         pub quick_boost_first_day: u32,
         /// Relationship gained by a solution on the first day.
         pub quick_resolution_boost_1day: f64,
@@ -51,25 +51,25 @@ parameters! {
     pub struct Billing {
         /// Days between two bills.
         pub billing_period_days: u32 where 30.0..=30.0,
-        /// Floor of a price after discounts, dollars a month.
+        /// Minimum price after discounts, dollars a month.
         pub effective_price_min: f64,
-        /// Least budget remembered with a bill, dollars a month.
+        /// Minimum budget stored with a bill, dollars a month.
         pub billing_c_max_min: f64,
     }
 
-    /// Floors of summed discounts (`docs/mechanics/retention/billing.md#promotions`).
+    /// Minimums of summed discounts (`docs/mechanics/retention/billing.md#promotions`).
     pub struct Promotions {
-        /// Floor of summed ongoing discounts, dollars a month.
+        /// Minimum of summed ongoing discounts, dollars a month.
         pub promotion_min: f64,
-        /// Floor of summed lead discounts, dollars a month.
+        /// Minimum of summed lead discounts, dollars a month.
         pub lead_promotion_min: f64,
     }
 
-    /// Cancellations nobody chose (`docs/mechanics/retention/involuntary-churn.md`).
+    /// Cancellations by failed payments (`docs/mechanics/retention/involuntary-churn.md`).
     pub struct InvoluntaryChurn {
-        /// Whether payments fail at all.
+        /// Whether payments can fail.
         pub enable_involuntary_churn: bool,
-        /// Length of a month of one rate, in days.
+        /// Days for which a rate is constant.
         pub month_days: u32 where 1.0..=100_000.0,
         /// Lower clamp of the monthly rate.
         pub mu_min: f64 where 0.0..=1.0,

@@ -1,4 +1,4 @@
-//! How a run goes: `configs/world/run.toml`.
+//! Parameters of a run: `configs/world/run.toml`.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,9 +9,9 @@ parameters! {
     pub struct Run {
         /// Default seed of a new run.
         pub seed: u64,
-        /// Default horizon in days; the competitors grow towards it.
+        /// Default length in days; the size of competitor events grows towards it.
         pub total_days: u32 where 7.0..=100_000.0,
-        /// Days of one `next_week`; the last week of a run may be shorter.
+        /// Days per `next_week`; the last week of a run can be shorter.
         pub days_per_week: u32 where 7.0..=7.0,
         /// The run ends when cash is below this at the end of a day, in dollars.
         pub bankruptcy_cash_threshold: f64,
@@ -49,9 +49,9 @@ parameters! {
         pub initial_reputation: f64 where 0.0..=1.0,
         /// Quality gained before day 1.
         pub q_shared_bonus: f64,
-        /// Info level of the six initial groups.
+        /// Study level of the six initial groups.
         pub initial_group_info_level: u8 where 0.0..=5.0,
-        /// Info level of the twenty groups still to be found.
+        /// Study level of the twenty groups to be discovered.
         pub discoverable_group_info_level: u8 where 0.0..=5.0,
         /// Satisfaction of a new customer.
         pub customer_satisfaction: f64,
@@ -61,11 +61,11 @@ parameters! {
 
     /// Limits of tools, queries and texts.
     pub struct Limits {
-        /// Longest post of the company, in code points.
+        /// Maximum length of the player's posts, in code points.
         pub post_max_chars: u32 where 0.0..=1e9,
-        /// Posts read when no limit is given.
+        /// Posts returned if no limit is given.
         pub get_social_posts_default_limit: u32 where 0.0..=1e9,
-        /// Rows a query returns at most.
+        /// Maximum rows of a query result.
         pub query_row_limit: u32 where 0.0..=1e9,
         /// A query is stopped after this many seconds.
         pub query_timeout_seconds: u32 where 0.0..=1e9,
@@ -73,40 +73,40 @@ parameters! {
         pub dashboard_calculation_max_chars: u32 where 0.0..=1e9,
         /// Characters shown of an own post.
         pub dashboard_post_preview_chars: u32 where 0.0..=1e9,
-        /// Horizons of the cash forecasts that every week asks for, in days.
+        /// Horizons of the weekly cash forecasts, in days.
         pub prediction_horizons_days: Vec<u32> where 1.0..=100_000.0,
     }
 }
 
-/// Odd mechanics, each with a second form (`docs/mechanics/README.md#the-release-and-the-paper`).
+/// Mechanics of the release with alternative forms (`docs/mechanics/README.md#the-release-and-the-paper`).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fidelity {
-    /// Form of the willingness curve.
+    /// Form of the participation curve.
     pub required_quality: RequiredQuality,
-    /// What the quota factor multiplies.
+    /// The terms that the quota factor multiplies.
     pub perceived_quality: PerceivedQuality,
-    /// Where overload and outages count.
+    /// Where overload and outages lower quality.
     pub service_penalty: ServicePenalty,
-    /// What a quota limits.
+    /// The period that a quota limits.
     pub usage_quota: UsageQuota,
     /// How often accumulated drift counts for a customer.
     pub drift_counted: DriftCounted,
     /// From when a demand surge acts.
     pub surge_start: SurgeStart,
-    /// Whether dead enterprise threads fire again.
+    /// Whether dead enterprise threads reappear.
     pub reappearing_threads: bool,
     /// On which days customers post.
     pub customer_posts: CustomerPosts,
-    /// Who judges the company's posts.
+    /// The judge of the player's posts.
     pub post_judge: PostJudge,
-    /// Whether a company refuses prices above its budget.
+    /// Whether an enterprise rejects prices above its budget.
     pub deal_price_ceiling: bool,
     /// Where the errors of insights come from.
     pub insight_noise: InsightNoise,
 }
 
-/// Form of the willingness curve.
+/// Form of the participation curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RequiredQuality {
@@ -116,13 +116,13 @@ pub enum RequiredQuality {
     Blended,
 }
 
-/// What the quota factor multiplies.
+/// The terms that the quota factor multiplies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PerceivedQuality {
     /// Delivered quality, relationship and tenure: the release.
     Release,
-    /// Issues and ads too: the paper.
+    /// Also issues and ads: the paper.
     Paper,
 }
 
@@ -136,7 +136,7 @@ pub enum ServicePenalty {
     Everywhere,
 }
 
-/// What a quota limits.
+/// The period that a quota limits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum UsageQuota {
@@ -146,11 +146,11 @@ pub enum UsageQuota {
     Period,
 }
 
-/// How often accumulated drift counts for a customer who came later.
+/// How often accumulated drift counts for a customer who arrived later.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DriftCounted {
-    /// At creation and again at every reading: the release.
+    /// At creation and again at every read: the release.
     EveryRead,
     /// Once.
     Once,
@@ -176,13 +176,13 @@ pub enum CustomerPosts {
     Daily,
 }
 
-/// Who judges the company's posts.
+/// The judge of the player's posts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PostJudge {
-    /// The judge that works without a language model.
+    /// The built-in judge without a language model.
     Offline,
-    /// Nobody.
+    /// No judge.
     None,
 }
 
@@ -190,7 +190,7 @@ pub enum PostJudge {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum InsightNoise {
-    /// A draw for each run, group, level and value.
+    /// A separate draw for each run, group, level and value.
     Independent,
     /// One sequence for each group, the same in every run, at every level and on every day: the release.
     Release,
@@ -200,11 +200,11 @@ pub enum InsightNoise {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SeriesChoice {
-    /// Which record.
+    /// The record to replay.
     pub replayed: Replayed,
 }
 
-/// A record of what does not depend on the company.
+/// A record of series that do not depend on the company.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Replayed {

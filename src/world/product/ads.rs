@@ -1,4 +1,4 @@
-//! In-app advertising: what it earns (`docs/mechanics/product/ads.md`). What it costs in quality is in `quality`.
+//! Revenue of in-app advertising (`docs/mechanics/product/ads.md`). Its cost in quality is in `quality`.
 
 use crate::customers::Customers;
 use crate::customers::columns::Block;
@@ -8,7 +8,7 @@ use crate::params::Params;
 use crate::quality::ads_effect;
 use crate::settings::AdsStrength;
 
-/// Effective strength for customers of a group without a level of their own, and with one.
+/// Effective ad strengths by group, and for customers with an individual setting.
 #[derive(Debug, Clone)]
 pub struct AdLoad<'a> {
     setting: &'a AdsStrength,
@@ -18,7 +18,7 @@ pub struct AdLoad<'a> {
 }
 
 impl<'a> AdLoad<'a> {
-    /// Effective strengths under a setting.
+    /// Computes effective strengths from a setting.
     pub fn of(setting: &'a AdsStrength, params: &'a Params) -> AdLoad<'a> {
         AdLoad {
             setting,
@@ -28,19 +28,19 @@ impl<'a> AdLoad<'a> {
         }
     }
 
-    /// What decisions and negotiations see: global + group.
+    /// Returns the strength that decisions and negotiations use: global + group.
     #[inline]
     pub fn for_group(&self, group: Group) -> f64 {
         self.by_group[group]
     }
 
-    /// What satisfaction feels and revenue counts: global + group + customer.
+    /// Returns the strength that satisfaction and revenue use: global + group + customer.
     #[inline]
     pub fn for_customer(&self, group: Group, customer: u32) -> f64 {
         if self.personal { self.for_single_customer(group, customer) } else { self.by_group[group] }
     }
 
-    /// The same where some customers have a level of their own. Apart, so that the usual case costs nothing.
+    /// Handles customers with an individual setting, in a separate function to keep the common case fast.
     #[cold]
     fn for_single_customer(&self, group: Group, customer: u32) -> f64 {
         let own = self.setting.for_customer(customer);
@@ -51,14 +51,14 @@ impl<'a> AdLoad<'a> {
         }
     }
 
-    /// Whether anybody is shown ads.
+    /// Returns whether any customer sees ads.
     pub fn is_used(&self) -> bool {
         self.setting.is_used()
     }
 }
 
-/// Revenue of the day: sensitivity times effective strength times whole seats, over everybody who sees ads,
-/// in dollars. Records one row per subscriber who earns.
+/// Returns the revenue of the day in dollars: sensitivity times effective strength times whole seats, over
+/// all customers who see ads. Records one row per subscriber with revenue.
 pub fn earn(customers: &Customers, load: &AdLoad<'_>, facts: &mut Facts) -> f64 {
     if !load.is_used() {
         return 0.0;
@@ -94,7 +94,7 @@ mod tests {
     use crate::test_kit::subscriber;
 
     fn near(actual: f64, expected: f64) {
-        assert!((actual - expected).abs() < 1e-9, "{actual} instead of {expected}");
+        assert!((actual - expected).abs() < 1e-9, "got {actual}, expected {expected}");
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The product: how much is used, how well it runs, how good it is, how it improves, what ads in it earn.
+//! The product: usage, service, quality, development, research and ad revenue.
 
 pub mod ads;
 pub mod development;
@@ -12,19 +12,19 @@ use super::events::Project;
 use super::identifiers::{ByGroup, Group};
 use super::params::Params;
 
-/// What development has achieved, and how much of it rivals could still copy
+/// The results of development, and the part of them that competitors can still copy
 /// (`docs/mechanics/product/development.md#banks`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Product {
-    /// Quality gained for everybody, noise included.
+    /// Quality gained for all groups, including noise.
     pub shared_bonus: f64,
     /// Quality gained for single groups.
     pub group_bonus: ByGroup<f64>,
-    /// Shared improvements that no rival has copied yet.
+    /// Shared improvements that no competitor has copied yet.
     pub shared_bank: f64,
-    /// Targeted improvements that no rival has copied yet.
+    /// Targeted improvements that no competitor has copied yet.
     pub group_bank: ByGroup<f64>,
-    /// R&D projects, in the order of their start.
+    /// R&D projects, in order of their start.
     pub research: Vec<Project>,
 }
 
@@ -33,7 +33,7 @@ canonical! {
 }
 
 impl Product {
-    /// The product of day 0.
+    /// Returns the product of day 0.
     pub fn opening(params: &Params) -> Product {
         Product {
             shared_bonus: params.initial.q_shared_bonus,
@@ -44,7 +44,7 @@ impl Product {
         }
     }
 
-    /// Product quality for a group before the model's multiplier.
+    /// Returns the product quality for a group before the model's multiplier.
     pub fn quality(&self, group: Group, params: &Params) -> f64 {
         params.quality.base_product_quality + self.shared_bonus + self.group_bonus[group]
     }

@@ -1,31 +1,31 @@
-//! How the projects of an R&D tier spread in time and gain, before one of them is drawn
-//! (`docs/mechanics/product/research.md#spread`). It follows from the tier alone, whatever the seed.
+//! The distribution of duration and gain of an R&D tier's projects before they are drawn
+//! (`docs/mechanics/product/research.md#spread`). It depends only on the tier, not on the seed.
 
 use crate::params::{Development, ResearchTier};
 use crate::random::inverse_normal;
 
-/// Share of the projects of a tier that take at most so many days, 0..=1.
+/// Returns the share of a tier's projects that take at most `days` days, 0..=1.
 pub fn done_within(days: u32, tier: &ResearchTier, development: &Development) -> f64 {
     match days < development.rd_min_duration_days {
         true => 0.0,
-        // Durations are cut to whole days, so a day is reached by all that is drawn below the next.
+        // Durations are truncated to whole days, so a day includes all draws below the next day.
         false => share_below(f64::from(days) + 1.0, tier.mean_days, tier.std_days),
     }
 }
 
-/// The least number of days within which a share of the projects is done; the share lies between 0 and 1.
+/// Returns the smallest number of days within which a share of the projects is complete; 0 < share < 1.
 pub fn days_for(share: f64, tier: &ResearchTier, development: &Development) -> u32 {
     let drawn = tier.mean_days + tier.std_days * inverse_normal(share);
     let least = development.rd_min_duration_days;
     let days = (drawn - 1.0).ceil().max(f64::from(least)) as u32;
-    // Rounding can leave the quantile a hair on the wrong side of a day.
+    // Rounding can put the quantile slightly on the wrong side of a day.
     match done_within(days, tier, development) < share {
         true => days + 1,
         false => days,
     }
 }
 
-/// Mean duration of the projects in days: the least duration, plus the chance of each day after it.
+/// Returns the mean duration in days: the minimum duration plus the probability of each later day.
 pub fn mean_days(tier: &ResearchTier, development: &Development) -> f64 {
     let (least, mean, std) = (development.rd_min_duration_days, tier.mean_days, tier.std_days);
     if std < 1.0 {
@@ -33,28 +33,29 @@ pub fn mean_days(tier: &ResearchTier, development: &Development) -> f64 {
         let lasts_longer = |days| 1.0 - done_within(days, tier, development);
         return f64::from(least) + (least..last).map(lasts_longer).sum::<f64>();
     }
-    // The sum over days as an integral: the midpoint rule with its first correction leaves less than a thousandth of a day.
+    // The sum over days as an integral: the midpoint rule with its first correction has an error below a
+    // thousandth of a day.
     let floor = f64::from(least);
     mean_above(floor + 0.5, mean, std) - 0.5 - normal_density((floor + 0.5 - mean) / std) / (24.0 * std)
 }
 
-/// Mean quality gain of the projects.
+/// Returns the mean quality gain.
 pub fn mean_gain(tier: &ResearchTier, development: &Development) -> f64 {
     mean_above(development.rd_min_quality_boost, tier.mean_quality_boost, tier.std_quality_boost)
 }
 
-/// The quality that a share of the projects does not exceed; the share lies between 0 and 1.
+/// Returns the quality gain that a share of the projects does not exceed; 0 < share < 1.
 pub fn gain_at(share: f64, tier: &ResearchTier, development: &Development) -> f64 {
     let drawn = tier.mean_quality_boost + tier.std_quality_boost * inverse_normal(share);
     drawn.max(development.rd_min_quality_boost)
 }
 
-/// Share of the projects that gain no more than the least, 0..=1.
+/// Returns the share of projects with the minimum gain, 0..=1.
 pub fn share_of_least_gain(tier: &ResearchTier, development: &Development) -> f64 {
     share_below(development.rd_min_quality_boost, tier.mean_quality_boost, tier.std_quality_boost)
 }
 
-/// Mean of a normal number that is raised to `floor` if it is below.
+/// Returns the mean of a normal number that is raised to `floor` if it is below.
 fn mean_above(floor: f64, mean: f64, std: f64) -> f64 {
     match std > 0.0 {
         true => {
@@ -65,12 +66,10 @@ fn mean_above(floor: f64, mean: f64, std: f64) -> f64 {
     }
 }
 
-/// Density of the standard normal distribution.
 fn normal_density(z: f64) -> f64 {
     libm::exp(-z * z / 2.0) / libm::sqrt(2.0 * std::f64::consts::PI)
 }
 
-/// Share of a normal distribution below a bound.
 fn share_below(bound: f64, mean: f64, spread: f64) -> f64 {
     match spread > 0.0 {
         true => 0.5 * libm::erfc((mean - bound) / spread * std::f64::consts::FRAC_1_SQRT_2),
@@ -157,7 +156,7 @@ mod tests {
             let longer = |days| 1.0 - done_within(days, tier, development);
             let summed = 30.0 + (30..last).map(longer).sum::<f64>();
             let mean = mean_days(tier, development);
-            assert!((mean - summed).abs() < 1e-3, "{tier:?}: {mean}, not {summed}");
+            assert!((mean - summed).abs() < 1e-3, "{tier:?}: got {mean}, expected {summed}");
         }
     }
 
@@ -169,7 +168,7 @@ mod tests {
             let at = |part| gain_at((f64::from(part) + 0.5) / f64::from(parts), tier, &params.development);
             let summed = (0..parts).map(at).sum::<f64>() / f64::from(parts);
             let mean = mean_gain(tier, &params.development);
-            assert!((mean / summed - 1.0).abs() < 1e-4, "{tier:?}: {mean}, not {summed}");
+            assert!((mean / summed - 1.0).abs() < 1e-4, "{tier:?}: got {mean}, expected {summed}");
             assert!(mean > tier.mean_quality_boost);
         }
     }

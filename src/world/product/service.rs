@@ -1,28 +1,28 @@
-//! Service health of the day (`docs/mechanics/product/service.md`).
+//! Service of a day (`docs/mechanics/product/service.md`).
 
 use crate::events::{Facts, ServiceDay};
 use crate::morning::Morning;
 use crate::params::{Operations, Params};
 use crate::random::{Part, Stream, Streams};
 
-/// Usage above capacity: max(0, usage / capacity - 1).
+/// Returns the usage above capacity as a share of capacity: max(0, usage / capacity - 1).
 pub fn overload(usage: u64, capacity_units: f64, operations: &Operations) -> f64 {
     (usage as f64 / capacity_units - operations.overload_reference_utilization).max(0.0)
 }
 
-/// Chance of an outage today: max(0.001, 0.03 exp(-ops / 500)) (1 + 4 o).
+/// Returns the probability of an outage today: max(0.001, 0.03 exp(-ops / 500)) (1 + 4 o).
 pub fn outage_probability(spend_operations: f64, overload: f64, operations: &Operations) -> f64 {
     let base =
         operations.base_outage_prob * libm::exp(-spend_operations / operations.ops_outage_reduction_scale);
     base.max(operations.ops_outage_min_prob) * (1.0 + operations.outage_overload_factor * overload)
 }
 
-/// Latency in milliseconds; `z` is a standard normal draw.
+/// Returns the latency in milliseconds; `z` is a standard normal draw.
 pub fn p95_latency(overload: f64, z: f64, operations: &Operations) -> f64 {
     operations.p95_base_ms + operations.p95_overload_factor * overload + operations.p95_noise_std * z
 }
 
-/// Share of failed requests; `z` is a standard normal draw.
+/// Returns the share of failed requests; `z` is a standard normal draw.
 pub fn error_rate(overload: f64, z: f64, operations: &Operations) -> f64 {
     let rate = operations.error_rate_base
         + operations.error_rate_overload_factor * overload
@@ -30,7 +30,7 @@ pub fn error_rate(overload: f64, z: f64, operations: &Operations) -> f64 {
     rate.clamp(operations.error_rate_min, operations.error_rate_max)
 }
 
-/// Minutes that an outage lasts.
+/// Draws the length of an outage in minutes.
 pub fn downtime(stream: &mut Stream, operations: &Operations) -> u32 {
     let (mut u, choices) = (stream.uniform(), operations.downtime_minutes_choices);
     for (minutes, probability) in choices.into_iter().zip(operations.downtime_minutes_probabilities) {
@@ -42,16 +42,16 @@ pub fn downtime(stream: &mut Stream, operations: &Operations) -> u32 {
     choices[2]
 }
 
-/// What strains the service on a day.
+/// Fixed inputs of the service on a day.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeldService {
-    /// Share of the metered usage that counts as its load.
+    /// Share of the metered usage that counts as load.
     pub load: f64,
-    /// The day whose luck decides on outages, latency and errors.
+    /// Day whose random draws determine outages, latency and errors.
     pub luck_of: u32,
 }
 
-/// Observes the service of the day, under what is held of its strain, and records it.
+/// Determines and records the service of the day, with fixed inputs if given.
 pub fn observe(
     total_usage: u64,
     morning: &Morning,
@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     fn near(actual: f64, expected: f64) {
-        assert!((actual - expected).abs() < 1e-10, "{actual} instead of {expected}");
+        assert!((actual - expected).abs() < 1e-10, "got {actual}, expected {expected}");
     }
 
     #[test]

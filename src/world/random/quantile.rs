@@ -2,7 +2,7 @@
 
 use published::*;
 
-/// Quantile of the standard normal distribution for 0 < p < 1, to full double precision (AS 241, PPND16).
+/// Returns the quantile of the standard normal distribution for 0 < p < 1, to full double precision (AS 241, PPND16).
 pub fn inverse_normal(p: f64) -> f64 {
     let q = p - 0.5;
     if q.abs() <= 0.425 {

@@ -1,25 +1,25 @@
-//! Eight streams opened side by side, on processors that can.
+//! Opens eight streams in parallel on processors with AVX2.
 //!
-//! Opening a stream is one block of BLAKE3 and one of ChaCha8, and each is a chain of steps that wait for each other: a
-//! processor spends most of that time idle. Thousands of streams a day are opened for a single draw (bills, leads), so
-//! eight of them go through the same steps together, one lane of a vector register each: a fifth of the time. The
-//! bits are those of [`super::Streams::open`], which serves where there are no such registers; the tests compare them.
-#![expect(unsafe_code, reason = "vector instructions need to be asked for; see the safety comments")]
+//! Opening a stream takes one block of BLAKE3 and one of ChaCha8, each a chain of dependent steps that leaves
+//! the processor mostly idle. Thousands of streams a day are opened for a single draw (bills, leads), so
+//! eight of them are processed together, one per lane of a vector register, in a fifth of the time. The bits
+//! equal those of [`super::Streams::open`], which is the fallback; tests compare them.
+#![expect(unsafe_code, reason = "AVX2 intrinsics are unsafe; see the safety comments")]
 
 use std::arch::x86_64::{
     __m256i, _mm256_add_epi32, _mm256_extract_epi32, _mm256_or_si256, _mm256_set_epi32, _mm256_set1_epi32,
     _mm256_slli_epi32, _mm256_srli_epi32, _mm256_xor_si256,
 };
 
-/// Streams that are opened together.
+/// Streams per batch.
 pub const LANES: usize = 8;
 
-/// Key of a stream, as the words of its bytes.
+/// Key of a stream as 32-bit words.
 pub type Key = [u32; 8];
 
-/// The initial state of BLAKE3, of which four words enter every block.
+/// The initial state of BLAKE3; its first four words enter every block.
 const START: [u32; 4] = [0x6a09_e667, 0xbb67_ae85, 0x3c6e_f372, 0xa54f_f53a];
-/// The order of a block's words in each round of BLAKE3.
+/// The word order of each round of BLAKE3.
 const ORDER: [[usize; 16]; 7] = [
     [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15],
     [2, 6, 3, 10, 7, 0, 4, 13, 1, 11, 12, 5, 9, 14, 15, 8],
@@ -29,28 +29,27 @@ const ORDER: [[usize; 16]; 7] = [
     [9, 14, 11, 5, 8, 12, 15, 1, 13, 3, 0, 10, 2, 6, 4, 7],
     [11, 15, 5, 0, 1, 9, 8, 6, 14, 10, 2, 12, 3, 4, 7, 13],
 ];
-/// Marks of a keyed hash whose input is a single block: first of a chunk, last of a chunk, root, keyed.
+/// Flags of a keyed hash of a single block: chunk start, chunk end, root, keyed.
 const SINGLE_KEYED_BLOCK: u32 = 1 | 2 | 8 | 16;
-/// The constant words of ChaCha.
 const EXPAND: [u32; 4] = [0x6170_7865, 0x3320_646e, 0x7962_2d32, 0x6b20_6574];
 
-/// Whether this processor has the registers.
+/// Returns whether the processor supports AVX2.
 pub fn available() -> bool {
     is_x86_feature_detected!("avx2")
 }
 
-/// Keys of the streams of these entities, eight by eight; none where [`available`] says no.
+/// Returns the stream keys of eight entities, or `None` if AVX2 is not [`available`].
 pub fn keys<const KEYS: usize>(part: &[u8; 32], entities: &[[u64; KEYS]; LANES]) -> Option<[Key; LANES]> {
-    // SAFETY: the processor was asked.
+    // SAFETY: `available` checked that the processor supports AVX2.
     available().then(|| unsafe { keys_in_lanes(part, entities) })
 }
 
-/// The first 64-bit words of the streams of these entities; none where [`available`] says no.
+/// Returns the first 64-bit words of the streams of eight entities, or `None` if AVX2 is not [`available`].
 pub fn first_words<const KEYS: usize>(
     part: &[u8; 32],
     entities: &[[u64; KEYS]; LANES],
 ) -> Option<[u64; LANES]> {
-    // SAFETY: the processor was asked.
+    // SAFETY: `available` checked that the processor supports AVX2.
     available().then(|| unsafe { first_words_in_lanes(part, entities) })
 }
 
@@ -65,7 +64,7 @@ fn keys_in_lanes<const KEYS: usize>(part: &[u8; 32], entities: &[[u64; KEYS]; LA
     keys
 }
 
-/// The head of the first ChaCha8 block of each stream.
+/// Returns the first words of the first ChaCha8 block of each stream.
 #[target_feature(enable = "avx2")]
 fn first_words_in_lanes<const KEYS: usize>(part: &[u8; 32], entities: &[[u64; KEYS]; LANES]) -> [u64; LANES] {
     let mut state = [same(0); 16];
@@ -92,7 +91,7 @@ fn first_words_in_lanes<const KEYS: usize>(part: &[u8; 32], entities: &[[u64; KE
     words
 }
 
-/// The keyed BLAKE3 hash of the bytes of each entity's keys, which is the key of its stream.
+/// Returns the keyed BLAKE3 hash of each entity's keys, which is the key of its stream.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn hash<const KEYS: usize>(part: &[u8; 32], entities: &[[u64; KEYS]; LANES]) -> [__m256i; 8] {
@@ -130,7 +129,6 @@ fn hash<const KEYS: usize>(part: &[u8; 32], entities: &[[u64; KEYS]; LANES]) -> 
     key
 }
 
-/// The mixing function of BLAKE3.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn hash_step(state: &mut [__m256i; 16], [a, b, c, d]: [usize; 4], first: __m256i, second: __m256i) {
@@ -144,7 +142,6 @@ fn hash_step(state: &mut [__m256i; 16], [a, b, c, d]: [usize; 4], first: __m256i
     state[b] = turned::<25, 7>(_mm256_xor_si256(state[b], state[c]));
 }
 
-/// The quarter round of ChaCha.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn cipher_step(state: &mut [__m256i; 16], [a, b, c, d]: [usize; 4]) {
@@ -158,7 +155,6 @@ fn cipher_step(state: &mut [__m256i; 16], [a, b, c, d]: [usize; 4]) {
     state[b] = turned::<7, 25>(_mm256_xor_si256(state[b], state[c]));
 }
 
-/// Every lane rotated to the left.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn turned<const LEFT: i32, const RIGHT: i32>(word: __m256i) -> __m256i {
@@ -166,14 +162,14 @@ fn turned<const LEFT: i32, const RIGHT: i32>(word: __m256i) -> __m256i {
     _mm256_or_si256(_mm256_slli_epi32::<LEFT>(word), _mm256_srli_epi32::<RIGHT>(word))
 }
 
-/// The same word in every lane.
+/// Returns a vector with the same word in every lane.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn same(word: u32) -> __m256i {
     _mm256_set1_epi32(word.cast_signed())
 }
 
-/// A word of its own in each lane.
+/// Returns a vector with a separate word in each lane.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn one_each(words: [u32; LANES]) -> __m256i {
@@ -181,7 +177,6 @@ fn one_each(words: [u32; LANES]) -> __m256i {
     _mm256_set_epi32(h, g, f, e, d, c, b, a)
 }
 
-/// The words of the lanes.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn lanes(word: __m256i) -> [u32; LANES] {

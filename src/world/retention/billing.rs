@@ -1,7 +1,7 @@
 //! Bills (`docs/mechanics/retention/billing.md`).
 //!
-//! Nothing between the decision of an individual and its bill touches either, so those who stay are billed at once,
-//! while their block is at hand; newcomers and companies are billed when the day's deals are done.
+//! Nothing between an individual's decision and its bill affects either, so subscribers who stay are billed
+//! in the same sweep. New customers and enterprises are billed after the day's deals.
 
 use std::collections::BTreeSet;
 
@@ -16,13 +16,13 @@ use crate::params::Params;
 use crate::product::usage::usage_rate;
 use crate::random::{Part, Word};
 
-/// The price a bill is based on: a cut reaches everybody and is stored, a rise never reaches a stored price;
-/// negotiated prices stay.
+/// Returns the price on which a bill is based. A price cut applies to all customers and is stored; an
+/// increase never changes a stored price. Negotiated prices stay.
 pub fn billed_list_price(stored: f64, list: f64, negotiated: bool) -> f64 {
     if negotiated { stored } else { stored.min(list) }
 }
 
-/// Bills of some rows of a block.
+/// Bills of rows of a block.
 pub struct Bills {
     group: Group,
     number: u32,
@@ -30,14 +30,14 @@ pub struct Bills {
     changes: Vec<TermsChanged>,
 }
 
-/// Bills the individuals of a block whose day it is and who were there this morning.
+/// Bills the individuals of a block who are due today and subscribed before today.
 pub fn bill_regulars(group: Group, number: u32, block: &mut Block, day: &DayContext<'_>) -> Bills {
     let due = if group.is_enterprise() { Vec::new() } else { due_today(block, day.day(), day.params) };
     bill_rows(group, number, block, due, day, &BTreeSet::new())
 }
 
-/// Bills newcomers and companies and puts the bills of the day on record. Companies that are `suspended` pay nothing
-/// while their threat to leave is open. Returns the payments of the day, in dollars.
+/// Bills new customers and enterprises and records all bills of the day. Enterprises in `suspended` pay
+/// nothing while their threat to leave is open. Returns the payments of the day, in dollars.
 pub fn collect(
     customers: &mut Customers,
     billed: Vec<Bills>,
@@ -62,7 +62,7 @@ pub fn collect(
             facts.changes.extend_from_slice(&bills.changes);
         }
     }
-    debug_assert!(billed.next().is_none(), "who was billed is still there");
+    debug_assert!(billed.next().is_none(), "billed customers are still active");
     received
 }
 
@@ -83,7 +83,7 @@ fn bill_rows(
             let before = terms(block, at);
             payments.push(pay(group, block, at, day));
             let after = terms(block, at);
-            // Seats of companies drift between two bills; the record follows with the bill.
+            // Seats of enterprises drift between two bills; the record is updated with the bill.
             if after != before || group.is_enterprise() {
                 changes.push(after);
             }
@@ -93,7 +93,7 @@ fn bill_rows(
     Bills { group, number, payments, changes }
 }
 
-/// Takes the payment and sets the terms of the next period.
+/// Records the payment and sets the terms of the next period.
 fn pay(group: Group, block: &mut Block, at: usize, day: &DayContext<'_>) -> Payment {
     let &DayContext { morning, settings, params, .. } = day;
     let floor = params.billing.effective_price_min;
@@ -115,7 +115,7 @@ fn pay(group: Group, block: &mut Block, at: usize, day: &DayContext<'_>) -> Paym
     Payment { customer, amount: price * block.seats[at].trunc() }
 }
 
-/// Sets the usage of the new period from its draw, at today's seats.
+/// Sets the usage rate of the new period from its draw and today's seats.
 fn start_period(block: &mut Block, at: usize, rate: Word, params: &Params) {
     let (z, seats) = (rate.standard_normal(), block.seats[at].trunc());
     block.usage_rate[at] = usage_rate(block.usage_demand[at], seats, z, &params.customer_generation);

@@ -1,9 +1,8 @@
-//! Support issues: who calls, who is helped, and what waiting does to a relationship
+//! Support issues: opening, resolution, and the effect of waiting on the relationship
 //! (`docs/mechanics/retention/issues.md`).
 //!
-//! Everything is decided from the values of the start of the day, so the calls are read before satisfaction
-//! moves and settled after it: block by block in the rounds of [`crate::day`]; in between the money of the day
-//! is shared out.
+//! Everything is decided from the values at the start of the day. Issues are found before the satisfaction update and
+//! settled after it, by block in the sweeps of [`crate::day`]; in between, the operations budget is allocated.
 
 use super::support_budget::Resolution;
 use crate::canonical::canonical;
@@ -17,7 +16,7 @@ use crate::quality::relationship_as_read;
 use crate::random::{Part, word_below};
 use crate::settings::Settings;
 
-/// Chance of a new issue today, from the satisfaction of the start of the day and whole seats.
+/// Returns the probability of a new issue today from the satisfaction at the start of the day and whole seats.
 #[inline]
 pub fn issue_probability(satisfaction: f64, outage: bool, seats: f64, issues: &Issues) -> f64 {
     let rate = issues.base_issue_rate
@@ -26,7 +25,7 @@ pub fn issue_probability(satisfaction: f64, outage: bool, seats: f64, issues: &I
     (rate * seats).clamp(issues.issue_probability_min, issues.issue_probability_max)
 }
 
-/// Mean number of a group's issues that a pool solves today: (b + lambda x) k_g / k.
+/// Returns the mean number of a group's issues that a pool resolves today: (b + lambda x) k_g / k.
 pub fn mean_resolved(
     base: f64,
     spend: f64,
@@ -40,7 +39,7 @@ pub fn mean_resolved(
     (base + per_dollar * spend) * f64::from(of_group) / f64::from(of_pool)
 }
 
-/// Relationship after an issue was solved at this many open days.
+/// Returns the relationship after an issue was resolved that had been open for this many days.
 pub fn relationship_after_solution(relationship: f64, open_days: u32, outage: bool, params: &Params) -> f64 {
     let issues = &params.issues;
     if open_days > issues.quick_resolution_threshold_days || outage {
@@ -54,13 +53,13 @@ pub fn relationship_after_solution(relationship: f64, open_days: u32, outage: bo
     (relationship_as_read(relationship, &params.quality) + boost).min(issues.relationship_max)
 }
 
-/// Relationship after another day without a solution.
+/// Returns the relationship after another day with an open issue.
 pub fn relationship_after_waiting(relationship: f64, issues: &Issues, quality: &Quality) -> f64 {
     (relationship_as_read(relationship, quality) - issues.relationship_decay_per_unresolved_day)
         .max(issues.relationship_min)
 }
 
-/// Running numbers of issues.
+/// Issue numbering.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct IssueDesk {
     /// Number of the next issue.
@@ -75,7 +74,7 @@ impl Default for IssueDesk {
     }
 }
 
-/// IssueBatch of one block, read at the start of the day: positions of rows.
+/// Issues of one block as row positions, read at the start of the day.
 pub struct IssueBatch {
     pub(super) group: Group,
     pub(super) block: u32,
@@ -83,25 +82,25 @@ pub struct IssueBatch {
     pub(super) open: Vec<u16>,
     /// Rows whose customer opens an issue today.
     pub(super) new: Vec<u16>,
-    /// Which of the open ones are solved.
+    /// Which of the open issues are resolved.
     pub(super) solved: Vec<bool>,
     /// Number of the first new issue.
     pub(super) first_issue: u32,
 }
 
-/// Rows whose answers are one word of bits.
+/// Rows whose flags fit into one word.
 const ROWS: usize = u64::BITS as usize;
 
-/// Reads who of a block has an issue and who opens one today.
+/// Finds the rows with an open issue and those that open one today.
 ///
-/// Hardly anybody's answer can be foreseen, so nothing branches on it: answers are bits first and lists afterwards.
+/// The conditions are unpredictable, so they are collected as bits without branches and turned into lists afterwards.
 pub fn read_calls(group: Group, number: u32, block: &Block, day: &DayContext<'_>) -> IssueBatch {
     let &DayContext { service, params, streams, .. } = day;
     let (day, outage) = (day.day(), service.outage);
     let keys = [u64::from(day), group.index() as u64, u64::from(number)];
     let mut words = [0u32; BLOCK as usize];
     streams.open(Part::IssueOpening, keys).fill(&mut words);
-    // Copied out, so that the compiler sees them unchanged from row to row.
+    // Copied to locals so that the compiler knows they are constant.
     let issues = &params.issues.clone();
     let mut waiting = [0u64; BLOCK as usize / ROWS];
     let mut calling = waiting;
@@ -129,7 +128,6 @@ pub fn read_calls(group: Group, number: u32, block: &Block, day: &DayContext<'_>
     IssueBatch { group, block: number, open, new, solved, first_issue: 0 }
 }
 
-/// Positions of the bits that are set, ascending.
 fn positions(bits: &[u64]) -> Vec<u16> {
     let mut positions = Vec::with_capacity(bits.iter().map(|word| word.count_ones() as usize).sum());
     for (word, first) in bits.iter().zip((0u16..).step_by(ROWS)) {
@@ -142,7 +140,7 @@ fn positions(bits: &[u64]) -> Vec<u16> {
     positions
 }
 
-/// Shares out the money of the day among the open issues and numbers the new ones, in the order of their blocks.
+/// Allocates the operations budget of the day among the open issues and numbers the new ones, in block order.
 pub fn allot(
     calls: &mut [IssueBatch],
     settings: &Settings,
@@ -159,18 +157,18 @@ pub fn allot(
     }
 }
 
-/// What became of the issues of a block.
+/// Results of the issues of a block.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Settled {
-    /// Whether any was open.
+    /// Whether any issue was open.
     pub any_open: bool,
-    /// Numbers of those that were solved.
+    /// Numbers of the resolved issues.
     pub resolved: Vec<u32>,
-    /// Those that were opened.
+    /// The new issues.
     pub opened: Vec<IssueOpened>,
 }
 
-/// Solves, ages and opens issues of a block; nobody may have left since the calls were read.
+/// Resolves, ages and opens issues of a block. No row may have been removed since they were found.
 pub fn settle(block: &mut Block, own: &IssueBatch, day: &DayContext<'_>) -> Settled {
     let &DayContext { service, params, .. } = day;
     let outage = service.outage;
@@ -181,7 +179,7 @@ pub fn settle(block: &mut Block, own: &IssueBatch, day: &DayContext<'_>) -> Sett
     }
 }
 
-/// Puts what became of the issues on record.
+/// Records the results.
 pub fn record(by_block: Vec<Settled>, facts: &mut Facts) {
     for own in by_block {
         facts.issues_aged |= own.any_open;
@@ -190,7 +188,7 @@ pub fn record(by_block: Vec<Settled>, facts: &mut Facts) {
     }
 }
 
-/// Solves or ages the open issues of a block; returns the numbers of the solved ones.
+/// Resolves or ages the open issues of a block; returns the numbers of the resolved ones.
 fn settle_open(block: &mut Block, own: &IssueBatch, outage: bool, params: &Params) -> Vec<u32> {
     let mut resolved = Vec::with_capacity(own.solved.iter().filter(|solved| **solved).count());
     for (&at, &solved) in own.open.iter().zip(&own.solved) {
@@ -208,7 +206,6 @@ fn settle_open(block: &mut Block, own: &IssueBatch, outage: bool, params: &Param
     resolved
 }
 
-/// Opens the new issues of a block.
 fn open_new(block: &mut Block, own: &IssueBatch, params: &Params) -> Vec<IssueOpened> {
     let open = |(issue, &at): (u32, &u16)| {
         let at = usize::from(at);
@@ -230,7 +227,7 @@ mod tests {
     use crate::test_kit::subscriber;
 
     fn near(actual: f64, expected: f64) {
-        assert!((actual - expected).abs() < 1e-12, "{actual} instead of {expected}");
+        assert!((actual - expected).abs() < 1e-12, "got {actual}, expected {expected}");
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Staying and leaving: how subscribers feel, when they call for help, what they decide, what they pay.
+//! Retention: satisfaction, support issues, renewal decisions and billing.
 
 pub mod billing;
 pub mod issues;
@@ -13,17 +13,18 @@ use super::identifiers::Group;
 use super::morning::Morning;
 use super::params::{DriftCounted, Params};
 
-/// Refreshes the stored required quality of a row: its curve at the price in force, with the budget of its
-/// last bill and the group's budget drift, before the market's expectations are added.
+/// Updates the stored required quality of a row: its curve at the price in force, with the budget of its last
+/// bill and the group's budget drift, before the market's expectations are added.
 ///
-/// The budget floor applies only where the drift is not 0 (`docs/mechanics/retention/satisfaction.md`).
+/// The minimum budget applies only if the drift is not 0 (`docs/mechanics/retention/satisfaction.md`).
 #[inline]
 pub fn refresh_required(block: &mut Block, at: usize, c_drift: f64, params: &Params) {
     let (curve, remembered) = (block.curve(at), block.effective_c_max[at]);
     block.required[at] = required_of(&curve, remembered, block.effective_price[at], c_drift, params);
 }
 
-/// Required quality at a price, with the budget of the last bill (0: none yet) and the group's budget drift.
+/// Returns the required quality at a price, with the budget of the last bill (0: none yet) and the group's
+/// budget drift.
 #[inline]
 pub fn required_of(curve: &Curve, remembered: f64, price: f64, c_drift: f64, params: &Params) -> f64 {
     let budget = if remembered != 0.0 { remembered } else { curve.c_max };
@@ -32,19 +33,19 @@ pub fn required_of(curve: &Curve, remembered: f64, price: f64, c_drift: f64, par
     required_quality(price, &curve.with_budget(budget), params)
 }
 
-/// Positions of those in a block whose billing day it is.
+/// Returns the positions of a block's subscribers who are billed today.
 pub fn due_today(block: &Block, day: u32, params: &Params) -> Vec<usize> {
     block.due((day % params.billing.billing_period_days) as u8)
 }
 
-/// Refreshes the required quality of everybody in a block.
+/// Updates the required quality of all rows of a block.
 pub fn refresh_block(group: Group, block: &mut Block, morning: &Morning, params: &Params) {
     for at in 0..block.len() {
         refresh_required(block, at, morning.expectations[group].c_max, params);
     }
 }
 
-/// Budget remembered with a bill: max(15, c + dc); without dc when drift counts once.
+/// Returns the budget stored with a bill: max(15, c + dc); without dc if drift counts once.
 pub fn remembered_budget(c_max: f64, c_drift: f64, params: &Params) -> f64 {
     let drift = match params.fidelity.drift_counted {
         DriftCounted::EveryRead => c_drift,

@@ -1,4 +1,4 @@
-//! What individuals decide on their billing day: stay, switch, or leave (`docs/mechanics/retention/renewal.md`).
+//! Decisions of individuals on their billing day: stay, switch, or cancel (`docs/mechanics/retention/renewal.md`).
 
 use crate::context::DayContext;
 use crate::customers::columns::{BLOCK, Block};
@@ -11,7 +11,7 @@ use crate::retention::due_today;
 use crate::retention::weighing::{drifted_curve, weigh};
 use crate::settings::Settings;
 
-/// Monthly rate of involuntary churn from a standard normal draw; 0 where a group has none.
+/// Returns the monthly rate of involuntary churn from a standard normal draw; 0 if the group has none.
 pub fn involuntary_rate(mean: f64, std: f64, z: f64, law: &InvoluntaryChurn) -> f64 {
     if !law.enable_involuntary_churn || (mean <= 0.0 && std <= 0.0) {
         return 0.0;
@@ -19,14 +19,14 @@ pub fn involuntary_rate(mean: f64, std: f64, z: f64, law: &InvoluntaryChurn) -> 
     (mean + std * z).clamp(law.mu_min, law.mu_max)
 }
 
-/// The rates of all groups in the month that holds a day; companies have none.
+/// Returns the rates of all groups in the month of a day; 0 for enterprises.
 pub fn involuntary_rates(day: u32, params: &Params, streams: &Streams) -> ByGroup<f64> {
     ByGroup::from_fn(|group| {
         if group.is_enterprise() { 0.0 } else { involuntary_rate_of(group, day, params, streams) }
     })
 }
 
-/// The rate of a group in the month that holds a day.
+/// Returns the rate of a group in the month of a day.
 pub fn involuntary_rate_of(group: Group, day: u32, params: &Params, streams: &Streams) -> f64 {
     let law = &params.involuntary_churn;
     let month = day / law.month_days;
@@ -40,7 +40,7 @@ pub fn involuntary_rate_of(group: Group, day: u32, params: &Params, streams: &St
     involuntary_rate(own.involuntary_churn_mean, own.involuntary_churn_std, z, law)
 }
 
-/// An individual who gave up today because no plan was acceptable.
+/// An individual who cancelled today because no plan was acceptable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GaveUp {
     /// Customer number.
@@ -53,26 +53,26 @@ pub struct GaveUp {
     pub satisfaction: f64,
     /// Days subscribed.
     pub days_subscribed: u32,
-    /// Plan it leaves.
+    /// The cancelled plan.
     pub plan: Plan,
-    /// Price it paid, dollars a month.
+    /// Price paid, dollars a month.
     pub price: f64,
 }
 
-/// What happened at the billing decisions of a day.
+/// Results of the billing decisions of a day.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Renewals {
-    /// Cancellations of both kinds.
+    /// Cancellations, voluntary and involuntary.
     pub cancellations: u32,
     /// Switches to a plan with a higher list price than the stored one.
     pub upgrades: u32,
     /// Other switches.
     pub downgrades: u32,
-    /// Those who found no acceptable plan.
+    /// Individuals who found no acceptable plan.
     pub gave_up: Vec<GaveUp>,
 }
 
-/// What the decisions of a day share.
+/// Shared inputs of the decisions of a day.
 pub struct RenewalContext<'a> {
     /// The day.
     pub day: &'a DayContext<'a>,
@@ -82,19 +82,19 @@ pub struct RenewalContext<'a> {
     pub willingness_to_pay: ByGroup<f64>,
 }
 
-/// What the individuals of a block decided.
+/// Decisions of the individuals of a block.
 #[derive(Default)]
 pub struct Decisions {
     endings: Vec<SubscriptionEnded>,
-    /// Those who found nothing acceptable.
+    /// Individuals who found no acceptable plan.
     gave_up: Vec<GaveUp>,
-    /// What each of them does to the reputation of their group.
+    /// Reputation damage by each of them.
     damages: Vec<f64>,
     switches: Vec<(bool, TermsChanged)>,
 }
 
-/// Adds up what was decided, block by block, and puts it on record. Those who found nothing acceptable harm the
-/// group's reputation, one after the other; those whose payment failed do not.
+/// Adds up and records the decisions of all blocks. Each individual without an acceptable plan damages the
+/// group's reputation, in order; failed payments do not.
 pub fn conclude(
     by_block: Vec<Decisions>,
     reputation: &mut ReputationBook,
@@ -123,7 +123,7 @@ pub fn conclude(
     renewals
 }
 
-/// By how much each of those who found nothing acceptable changes the reputation of their group: negative.
+/// Returns the change of reputation by each individual without an acceptable plan: negative.
 fn damages(gave_up: &[GaveUp], day: &DayContext<'_>) -> Vec<f64> {
     let &DayContext { morning, params, streams, .. } = day;
     let keys_of = |person: &GaveUp| [morning.day.into(), person.group.index() as u64, person.n.into(), 0];
@@ -136,7 +136,7 @@ fn damages(gave_up: &[GaveUp], day: &DayContext<'_>) -> Vec<f64> {
     gave_up.iter().zip(rolls).map(damage).collect()
 }
 
-/// The roll of each place of a block, which decides whether a payment of the day fails for good.
+/// Returns a random word for each position of a block, which decides whether a payment fails permanently.
 pub fn payment_rolls(group: Group, number: u32, day: u32, streams: &Streams) -> [u32; BLOCK as usize] {
     let mut words = [0; BLOCK as usize];
     let keys = [u64::from(day), group.index() as u64, u64::from(number)];
@@ -144,7 +144,7 @@ pub fn payment_rolls(group: Group, number: u32, day: u32, streams: &Streams) -> 
     words
 }
 
-/// Lets the individuals of a block whose billing day it is decide; takes out those who leave.
+/// Lets the individuals of a block decide who are billed today; removes those who leave.
 pub fn decide(group: Group, number: u32, block: &mut Block, judgement: &RenewalContext<'_>) -> Decisions {
     let mut outcome = Decisions::default();
     if group.is_enterprise() {
@@ -211,7 +211,7 @@ fn person(group: Group, block: &Block, at: usize, day: u32) -> GaveUp {
     }
 }
 
-/// Ongoing discount of a customer on a plan, floored at 0: P(i, g, p).
+/// Returns the ongoing discount of a customer on a plan, at least 0: P(i, g, p).
 pub fn ongoing_discount(
     customer: u32,
     group: Group,
@@ -222,7 +222,7 @@ pub fn ongoing_discount(
     settings.promotion.sum(customer, group, plan).max(params.promotions.promotion_min)
 }
 
-/// Switches a row to another plan at today's terms; the tenure stays. Returns whether it is an upgrade.
+/// Switches a row to another plan at today's terms; tenure continues. Returns whether it is an upgrade.
 fn switch(
     group: Group,
     block: &mut Block,
@@ -245,7 +245,7 @@ fn switch(
     (upgrade, terms(block, at))
 }
 
-/// The terms of a row as they stand.
+/// Returns the current terms of a row.
 pub fn terms(block: &Block, at: usize) -> TermsChanged {
     TermsChanged {
         subscription: block.subscription[at],
@@ -279,7 +279,7 @@ mod tests {
         Group::at(0).expect("S1")
     }
 
-    /// Runs `check` with the judgement of a day of which `day` and `settings` are given.
+    /// Runs `check` with the decision context of a given day and settings.
     fn with_judgement<R>(
         day: &Morning,
         settings: &Settings,
@@ -331,7 +331,7 @@ mod tests {
         });
     }
 
-    /// The decision alone; bills are tested in `billing`.
+    /// The decision only; bills are tested in `billing`.
     #[test]
     fn a_price_rise_is_judged_at_todays_list_price() {
         for (list, willingness, promotion, stays) in [

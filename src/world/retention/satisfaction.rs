@@ -13,13 +13,13 @@ use crate::quality::{
 };
 use crate::reputation::{Mood, contribution};
 
-/// Moving average: (1 - alpha) old + alpha instant.
+/// Returns the moving average: (1 - alpha) old + alpha instant.
 #[inline]
 pub fn moved_satisfaction(old: f64, instant: f64, alpha: f64) -> f64 {
     (1.0 - alpha) * old + alpha * instant
 }
 
-/// Adds up what the blocks of each group contribute, in their order.
+/// Adds up the contributions of the blocks of each group, in their order.
 pub fn by_group(by_block: Vec<(Group, Mood)>) -> ByGroup<Mood> {
     let mut moods = ByGroup::<Mood>::default();
     for (group, mood) in by_block {
@@ -28,28 +28,28 @@ pub fn by_group(by_block: Vec<(Group, Mood)>) -> ByGroup<Mood> {
     moods
 }
 
-/// A day of one subscriber, as its satisfaction moves by it.
+/// The terms of one subscriber's satisfaction update.
 #[derive(Debug, Clone, Copy)]
 pub struct FeltDay {
     /// The terms of its perceived quality.
     pub experience: Experience,
-    /// Quality lost to today's service, contained in what is delivered.
+    /// Quality lost to today's service, included in the delivered quality.
     pub service_penalty: f64,
     /// Perceived quality.
     pub perceived: f64,
-    /// Quality that its price requires, before the market's expectations.
+    /// Quality that the price requires, before the market's expectations.
     pub required: f64,
-    /// What the market adds to that.
+    /// The market's addition to the required quality.
     pub expectation: f64,
-    /// Perceived quality beyond both.
+    /// Perceived quality minus both.
     pub instant: f64,
-    /// Satisfaction before.
+    /// Satisfaction before the update.
     pub before: f64,
-    /// Satisfaction afterwards.
+    /// Satisfaction after the update.
     pub after: f64,
 }
 
-/// What the subscriber at a position of a block feels today, one at a time; the block is as [`update`] finds it.
+/// Computes the update of one subscriber without applying it; the block must be in the state before [`update`].
 pub fn felt(group: Group, block: &Block, at: usize, day: &DayContext<'_>) -> FeltDay {
     let &DayContext { morning, service, ads, tenure, params, .. } = day;
     let quality = &params.quality;
@@ -78,7 +78,6 @@ pub fn felt(group: Group, block: &Block, at: usize, day: &DayContext<'_>) -> Fel
     FeltDay { experience, service_penalty: penalty, perceived, required, expectation, instant, before, after }
 }
 
-/// What a subscriber brings to a day.
 struct Own {
     usage_rate: f64,
     relationship: f64,
@@ -86,7 +85,6 @@ struct Own {
     ads_sensitivity: f64,
 }
 
-/// What it meets.
 struct Met {
     delivered: f64,
     quota: f64,
@@ -94,7 +92,7 @@ struct Met {
     ads: f64,
 }
 
-// Always inlined: rows are calculated side by side only where this stands among them.
+// Always inlined, because rows are vectorized only if this is part of the loop.
 #[inline(always)]
 fn experienced(own: Own, met: Met, weekday: f64, quality: &Quality, params: &Params) -> Experience {
     let demand = quota_demand(own.usage_rate * weekday, own.usage_rate, params);
@@ -108,15 +106,15 @@ fn experienced(own: Own, met: Met, weekday: f64, quality: &Quality, params: &Par
     }
 }
 
-/// The quota whose share of the demand is what the demand is of this one.
+/// Returns the quota for which quota / demand equals demand / quota of the given one.
 fn as_if_inverted(quota: f64, daily_demand: f64) -> f64 {
     daily_demand * daily_demand / quota
 }
 
-/// Rows that are worked on together: few enough for what is looked up for them to stay close at hand.
+/// Rows per batch: few enough for their looked-up values to stay in cache.
 const ROWS: usize = 64;
 
-/// What has to be looked up row by row.
+/// Values that have to be looked up by row.
 struct Found {
     delivered: [f64; ROWS],
     quota: [f64; ROWS],
@@ -157,11 +155,10 @@ impl Found {
     }
 }
 
-/// Moves the satisfaction of everybody in a block and returns what they contribute to their group's reputation.
+/// Updates the satisfaction of all rows of a block and returns their contributions to the group's reputation.
 ///
-/// One pass over the columns it needs, some rows at a time. Looking up, calculating and adding up are loops of their
-/// own; what all rows share is copied out first, and what is calculated goes to the column afterwards. So the compiler
-/// sees that rows do not depend on each other, and calculates several at once.
+/// Rows are processed in batches. Lookups, calculation and summation are separate loops over local copies, so
+/// that the compiler can vectorize the calculation.
 pub fn update(group: Group, block: &mut Block, day: &DayContext<'_>) -> Mood {
     let &DayContext { morning, service, params, .. } = day;
     let (quality, reputation) = (&params.quality.clone(), &params.reputation.clone());

@@ -1,4 +1,4 @@
-//! Which open issues are solved today: pools of money share them out, one after the other
+//! Resolution of open issues: pools of money resolve them one after the other
 //! (`docs/mechanics/retention/issues.md#pools`).
 
 use super::issues::{IssueBatch, mean_resolved};
@@ -9,7 +9,7 @@ use crate::params::Params;
 use crate::random::{Part, Streams};
 use crate::settings::Settings;
 
-/// A pool of open issues that shares one amount of money.
+/// A pool of open issues that share one budget.
 #[derive(Debug, Clone, Copy)]
 enum SupportBudget {
     Everybody,
@@ -20,7 +20,7 @@ enum SupportBudget {
 }
 
 impl SupportBudget {
-    /// Keys of the pool's stream: kind and which one.
+    /// Returns the keys of the pool's stream: kind and member.
     fn keys(self) -> [u64; 2] {
         match self {
             SupportBudget::Everybody => [0, 0],
@@ -41,12 +41,11 @@ impl SupportBudget {
         }
     }
 
-    /// Whether it holds everybody of a group.
     fn holds_all_of(self, group: Group) -> bool {
         matches!(self, SupportBudget::Everybody) || matches!(self, SupportBudget::Group(own) if own == group)
     }
 
-    /// The only group a pool can hold, where it names one.
+    /// Returns the only group that a pool can contain, if there is one.
     fn only_group(self) -> Option<Group> {
         match self {
             SupportBudget::Group(group) | SupportBudget::GroupPlan(group, _) => Some(group),
@@ -55,7 +54,7 @@ impl SupportBudget {
     }
 }
 
-/// The solving of a day.
+/// The resolution of issues on one day.
 pub(super) struct Resolution<'a> {
     pub day: u32,
     pub calls: &'a mut [IssueBatch],
@@ -65,7 +64,7 @@ pub(super) struct Resolution<'a> {
 }
 
 impl Resolution<'_> {
-    /// Pools from the widest to the narrowest; each works on what the earlier ones left.
+    /// Processes pools from the widest to the narrowest; each works on the issues that earlier ones left open.
     pub fn run(&mut self, settings: &Settings) {
         let base = self.params.issues.issue_resolution_base_rate;
         self.work(SupportBudget::Everybody, base, settings.core.operations);
@@ -112,7 +111,7 @@ impl Resolution<'_> {
         }
     }
 
-    /// Open issues that a pool holds and nobody has solved yet, by group.
+    /// Returns the unresolved issues of a pool by group.
     fn members(&self, pool: SupportBudget) -> ByGroup<Members> {
         let mut members: ByGroup<Members> = ByGroup::default();
         let calls = (0..).zip(&*self.calls);
@@ -134,8 +133,8 @@ impl Resolution<'_> {
     }
 }
 
-/// Open issues of a group that share a pool, in the order of their blocks, as runs of entries that follow each other:
-/// where a pool holds everybody and nothing is solved yet, as in the first one of a day, a block is one run.
+/// Open issues of a group in a pool, in block order, as runs of consecutive entries. If a pool contains all
+/// issues and none is resolved yet, as in the first pool of a day, each block is one run.
 #[derive(Default)]
 struct Members {
     runs: Vec<SolvedRun>,
@@ -145,9 +144,9 @@ struct Members {
 struct SolvedRun {
     /// Number of its first member.
     first: u32,
-    /// Block of calls.
+    /// Index of the block's batch of issues.
     calls: u32,
-    /// Entry of its first member there.
+    /// Entry of its first member in that batch.
     entry: u32,
 }
 
@@ -168,7 +167,7 @@ impl Members {
         }
     }
 
-    /// Solves the issues of the chosen ones; `chosen` says it of every member.
+    /// Marks the chosen issues as resolved; `chosen` has one value per member.
     fn solve(&self, chosen: &[bool], calls: &mut [IssueBatch]) {
         let ends = self.runs.iter().skip(1).map(|next| next.first).chain([self.count]);
         for (run, end) in self.runs.iter().zip(ends) {

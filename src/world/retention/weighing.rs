@@ -1,4 +1,4 @@
-//! What an individual weighs when it decides whether to stay (`docs/mechanics/retention/renewal.md`).
+//! The comparison of plans when an individual decides whether to stay (`docs/mechanics/retention/renewal.md`).
 
 use super::renewal::{RenewalContext, ongoing_discount};
 use crate::context::DayContext;
@@ -9,24 +9,24 @@ use crate::identifiers::{ByPlan, Group, Plan};
 use crate::params::{Params, ServicePenalty};
 use crate::quality::{Experience, perceived_quality, quota_demand, quota_factor, relationship_bonus};
 
-/// The plans as an individual sees them, and what it asks of them.
+/// The plans as an individual perceives them, and its requirements.
 #[derive(Debug, Clone, Copy)]
 pub struct Weighing {
-    /// Today's list prices after the ongoing discounts, dollars a month.
+    /// Today's list prices minus the ongoing discounts, dollars a month.
     pub prices: ByPlan<f64>,
-    /// What each plan would be like.
+    /// The quality terms of each plan.
     pub experiences: ByPlan<Experience>,
-    /// Quality lost to today's service, contained in what is delivered.
+    /// Quality lost to today's service, included in the delivered quality.
     pub service_penalty: f64,
-    /// Its own curve.
+    /// The individual's curve.
     pub own_curve: Curve,
-    /// What the market adds to the curve.
+    /// The market's change of the curve.
     pub expectation: Expectation,
     /// Macro multiplier of the budget.
     pub willingness_to_pay: f64,
 }
 
-/// What an individual at a position of a block weighs today.
+/// Compares the plans for the individual at a position of a block.
 pub fn weigh(group: Group, block: &Block, at: usize, judgement: &RenewalContext<'_>) -> Weighing {
     let &DayContext { morning, settings, params, .. } = judgement.day;
     let service_penalty = match params.fidelity.service_penalty {
@@ -40,7 +40,7 @@ pub fn weigh(group: Group, block: &Block, at: usize, judgement: &RenewalContext<
     let quality = &params.quality;
     let rate = block.usage_rate[at];
     let demand = quota_demand(rate * morning.weekday, rate, params);
-    // (`docs/mechanics/product/quality.md#who-feels-what`)
+    // (`docs/mechanics/product/quality.md#terms-of-each-decision`)
     let experiences = ByPlan::from_fn(|plan| Experience {
         delivered: morning.delivered(group, plan) - service_penalty,
         relationship: relationship_bonus(block.relationship[at], quality),
@@ -60,37 +60,39 @@ pub fn weigh(group: Group, block: &Block, at: usize, judgement: &RenewalContext<
 }
 
 impl Weighing {
-    /// Perceived quality of each plan.
+    /// Returns the perceived quality of each plan.
     pub fn qualities(&self, params: &Params) -> ByPlan<f64> {
         ByPlan::from_fn(|plan| perceived_quality(self.experiences[plan], params.fidelity.perceived_quality))
     }
 
-    /// The curve with what the market adds, and the budget with the economy.
+    /// Returns the curve with the market's change, and the budget with the effect of the economy.
     pub fn curve(&self, params: &Params) -> Curve {
         let curve = drifted_curve(self.own_curve, self.expectation, params);
         curve.with_budget(curve.c_max * self.willingness_to_pay)
     }
 
-    /// The plan that is best, if one is acceptable.
+    /// Returns the best acceptable plan, if any.
     pub fn choice(&self, params: &Params) -> Option<Plan> {
         best_plan(&self.prices, &self.qualities(params), &self.curve(params), params)
     }
 
-    /// Quality of a plan beyond what its price requires; acceptable is 0 or more, within the budget.
+    /// Returns the quality of a plan in excess of what its price requires. A plan is acceptable from 0 on if
+    /// its price is within the budget.
     pub fn surplus(&self, plan: Plan, params: &Params) -> f64 {
         let quality = perceived_quality(self.experiences[plan], params.fidelity.perceived_quality);
         quality - required_quality(self.prices[plan], &self.curve(params), params)
     }
 }
 
-/// The curve of an individual with what the market adds.
+/// Returns the curve of an individual with the market's change.
 pub fn drifted_curve(own: Curve, expectation: Expectation, params: &Params) -> Curve {
     own.drifted(expectation.quality, expectation.c_max, params.quality.read_time_c_max_min)
 }
 
-/// The acceptable plan with the largest surplus; the earlier one on a tie, none if nothing is acceptable.
+/// Returns the acceptable plan with the largest surplus, the earlier one on a tie, or `None` if none is acceptable.
 ///
-/// Acceptable is a price within the budget of the curve with quality at least as required (not strict).
+/// A plan is acceptable if its price is within the budget of the curve and its quality is at least the
+/// required quality.
 pub fn best_plan(
     prices: &ByPlan<f64>,
     qualities: &ByPlan<f64>,
@@ -99,7 +101,7 @@ pub fn best_plan(
 ) -> Option<Plan> {
     let mut best: Option<(f64, Plan)> = None;
     for plan in Plan::ALL {
-        // No price requires less than the floor of the curve: most plans need no closer look.
+        // No price requires less than the minimum of the curve, so most plans need no further evaluation.
         let most = qualities[plan] - curve.q_min.min(curve.q_max);
         if prices[plan] > curve.c_max || most < 0.0 || best.is_some_and(|(surplus, _)| most <= surplus) {
             continue;

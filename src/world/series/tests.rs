@@ -1,4 +1,4 @@
-//! A world that replays the recorded series arrives at the figures that were measured with it.
+//! Tests that a world that replays the recorded series reproduces the figures measured with it.
 
 use super::*;
 use crate::day::step_day;
@@ -22,7 +22,7 @@ fn replaying() -> Params {
         .expect("parameters")
 }
 
-/// A file of measured figures, row by row.
+/// Rows of a file of measured figures.
 macro_rules! measured {
     ($file:literal) => {
         include_str!(concat!("../../../tests/data/seed42/", $file, ".csv"))
@@ -44,7 +44,7 @@ fn group(id: &str) -> Group {
     Group::parse(id).expect("a group")
 }
 
-/// Plays an untouched company; `each` sees the world and the facts of every day.
+/// Simulates a company without actions and calls `each` with the world and the facts of every day.
 fn untouched(seed: u64, mut each: impl FnMut(&World, &Facts)) {
     let (params, streams, mut facts) = (replaying(), Streams::new(seed), Facts::default());
     let mut world = World::open(500, 1_000_000.0, &params, &mut facts);
@@ -58,7 +58,7 @@ fn untouched(seed: u64, mut each: impl FnMut(&World, &Facts)) {
 fn the_economy_is_the_recorded_one_on_every_day_with_its_publications() {
     let pmi: Vec<f64> = measured!("pmi_daily").map(|row| number(row[1])).collect();
     let mut published: Vec<(u32, Reading)> = Vec::new();
-    // The seed of the run does not count.
+    // The seed of the run has no effect.
     untouched(7, |world, facts| {
         assert_eq!(world.market.economy.pmi.to_bits(), pmi[world.day as usize - 1].to_bits());
         published.extend(facts.readings.iter().map(|reading| (world.day, *reading)));

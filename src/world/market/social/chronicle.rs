@@ -1,4 +1,4 @@
-//! What the public remembers of the company: a short record of every day, which a judge of its posts may consult
+//! A record of the company's recent days, which the judge of its posts uses
 //! (docs/mechanics/market/social/chronicle.md).
 
 use crate::canonical::canonical;
@@ -8,21 +8,21 @@ use crate::product::Product;
 use crate::quota::Quota;
 use crate::settings::Settings;
 
-/// Days that are remembered besides today.
+/// Number of days kept in addition to today.
 pub const MEMORY_DAYS: usize = 28;
 
-/// The last days, oldest first; today is the last one.
+/// The recent days, oldest first; the last one is today.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chronicle {
     days: Vec<Page>,
 }
 
-/// One day.
+/// The record of one day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Page {
     /// Day.
     pub day: u32,
-    /// Quality gained so far, shared and for the group.
+    /// Quality gained so far, shared and group-specific.
     pub bonus: ByGroup<f64>,
     /// Shared quality gained so far.
     pub shared_bonus: f64,
@@ -30,13 +30,13 @@ pub struct Page {
     pub prices: ByPlan<f64>,
     /// Quotas, units a day.
     pub quotas: ByPlan<Quota>,
-    /// The largest discount anybody could have, dollars a month.
+    /// The largest discount that any customer could get, dollars a month.
     pub discount: f64,
     /// Whether there was an outage.
     pub outage: bool,
-    /// Usage above capacity.
+    /// Usage above capacity as a share of capacity.
     pub overload: f64,
-    /// Latency, ms; none on day 0.
+    /// Latency, ms; `None` on day 0.
     pub p95_ms: Option<f64>,
 }
 
@@ -46,7 +46,7 @@ canonical! {
 }
 
 impl Chronicle {
-    /// The record of day 0.
+    /// Returns the record of day 0.
     pub fn opening(settings: &Settings) -> Chronicle {
         let page = Page {
             day: 0,
@@ -62,7 +62,7 @@ impl Chronicle {
         Chronicle { days: vec![page] }
     }
 
-    /// Writes a page at the end of a day and forgets what is too old.
+    /// Appends a page at the end of a day and removes the oldest if necessary.
     pub fn write(&mut self, day: u32, service: &ServiceDay, settings: &Settings, product: &Product) {
         let surplus = (self.days.len()).saturating_sub(MEMORY_DAYS);
         self.days.drain(..surplus);
@@ -79,27 +79,27 @@ impl Chronicle {
         });
     }
 
-    /// The newest page.
+    /// Returns the newest page.
     pub fn today(&self) -> &Page {
         self.days.last().expect("a chronicle is never empty")
     }
 
-    /// The page of 28 days ago, or of day 0 while the company is younger.
+    /// Returns the page of 28 days ago, or of day 0 if the company is younger.
     pub fn oldest(&self) -> &Page {
         self.days.first().expect("a chronicle is never empty")
     }
 
-    /// The newest pages, newest first.
+    /// Returns the newest pages, newest first.
     pub fn last(&self, days: usize) -> impl Iterator<Item = &Page> {
         self.days.iter().rev().take(days)
     }
 
-    /// All pages with the one before, newest first.
+    /// Returns all pages with their predecessors, newest first.
     pub fn steps(&self) -> impl Iterator<Item = (&Page, &Page)> {
         self.days.windows(2).rev().map(|pair| (&pair[0], &pair[1]))
     }
 
-    /// Change of the quality of a group over the memory.
+    /// Returns the change of a group's quality over the recorded days.
     pub fn progress(&self, group: Group) -> f64 {
         self.today().bonus[group] - self.oldest().bonus[group]
     }

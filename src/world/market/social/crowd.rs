@@ -1,8 +1,8 @@
-//! Customers' posts: who is picked among everybody who may post (docs/mechanics/market/social/crowd.md).
+//! Customers' posts: the selection of authors (docs/mechanics/market/social/crowd.md).
 //!
-//! Drawing one after the other without replacement, each by its weight among those left, is the order of arrival
-//! in a race of exponential clocks with these weights as their rates. So the first of the subscribers are drawn
-//! while all of them are still there, and those who leave later in the day join the race with clocks of their own.
+//! Weighted drawing without replacement is equivalent to the order of exponential clocks whose rates are the
+//! weights. The first authors are therefore drawn while all subscribers are present, and customers who leave
+//! later in the day join with their own clocks.
 
 use super::Social;
 use super::engagement::draw_engagement;
@@ -19,7 +19,7 @@ use crate::params::{CustomerPosts, Params};
 use crate::random::{Part, Stream, Streams};
 use crate::retention::renewal::GaveUp;
 
-/// Whether customers are heard on a day.
+/// Returns whether customers post on a day.
 pub fn is_posting_day(day: u32, params: &Params) -> bool {
     match params.fidelity.customer_posts {
         CustomerPosts::Weekly => day.is_multiple_of(params.run.days_per_week),
@@ -27,42 +27,41 @@ pub fn is_posting_day(day: u32, params: &Params) -> bool {
     }
 }
 
-/// The voices of a block.
+/// Post weights of the rows of a block.
 pub struct Voices {
     /// Satisfaction of its rows before today's update.
     before: Vec<f64>,
-    /// Sum of their weights.
+    /// Sum of the weights.
     weight: f64,
 }
 
-/// Weighs the voices of a block whose satisfaction was `before` until today.
+/// Computes the post weights of a block from the satisfaction before today's update.
 pub fn hear(group: Group, block: &Block, before: Vec<f64>, scene: &Scene<'_>) -> Voices {
     let weight = before.iter().enumerate().map(|(at, before)| weight(scene, group, block, at, *before)).sum();
     Voices { before, weight }
 }
 
-/// Somebody who wants to post.
 #[derive(Debug, Clone, Copy)]
 struct Candidate {
-    /// When its clock rings.
+    /// Time of its exponential clock.
     time: f64,
     customer: u32,
     group: Group,
     n: u32,
-    /// Satisfaction that decides the tone; none: always a complaint.
+    /// Satisfaction that determines the tone; `None` for a complaint.
     satisfaction: Option<f64>,
     opinion: Opinion,
 }
 
-/// The race for the posts of a day.
+/// The selection of today's authors.
 pub struct Crowd {
     stream: Stream,
     candidates: Vec<Candidate>,
     places: usize,
 }
 
-/// Starts the race among all subscribers, right after their moods have moved; `voices` are those of the blocks that
-/// hold anybody, in their order.
+/// Starts the selection among all subscribers, right after the satisfaction update. `voices` belong to the
+/// non-empty blocks, in their order.
 pub fn listen(mut voices: Vec<Voices>, customers: &Customers, scene: &Scene<'_>, streams: &Streams) -> Crowd {
     let mut stream = streams.open(Part::CustomerPosts, [u64::from(scene.day.day())]);
     let places = scene.day.params.social.max_posts_per_day as usize;
@@ -100,8 +99,8 @@ fn weight(scene: &Scene<'_>, group: Group, block: &Block, at: usize, before: f64
     post_weight(&scene.loudness(group, block, at, before), &scene.day.params.social)
 }
 
-/// The row at which the running sum of the weights of those not yet taken passes the target; the last one where
-/// rounding lets the target pass them all.
+/// Returns the row at which the running sum of the weights of remaining rows exceeds the target, or the last
+/// one if rounding prevents that.
 fn find(
     blocks: &[(Group, &Block)],
     voices: &[Voices],
@@ -132,7 +131,7 @@ fn find(
 }
 
 impl Crowd {
-    /// Those who gave up and the companies that were lost join the race.
+    /// Adds individuals who cancelled and enterprises that were lost.
     pub fn join(&mut self, gave_up: &[GaveUp], lost: &[CompanyLost], params: &Params) {
         let law = &params.social;
         for own in gave_up {
@@ -173,13 +172,13 @@ impl Crowd {
         self.candidates.push(Candidate { time, customer, group, n, satisfaction: None, opinion });
     }
 
-    /// The first ones post.
+    /// Publishes the posts of the earliest candidates.
     pub fn publish(mut self, social: &mut Social, params: &Params, streams: &Streams, facts: &mut Facts) {
         self.candidates.sort_by(|one, other| one.time.total_cmp(&other.time));
         self.candidates.truncate(self.places);
         for own in self.candidates {
             let u = self.stream.uniform();
-            // Those who have left always complain.
+            // Departed customers always complain.
             let tone =
                 own.satisfaction.map_or(Sentiment::Negative, |mood| sentiment(mood, u, &params.social));
             let engagement = draw_engagement(tone, own.group.id(), params, &mut self.stream);
@@ -189,7 +188,7 @@ impl Crowd {
     }
 }
 
-/// A customer as an author, with the profile that was drawn at its arrival.
+/// Returns a customer as an author, with the profile drawn at arrival.
 pub fn author_of(
     customer: u32,
     group: Group,
@@ -198,7 +197,7 @@ pub fn author_of(
     params: &Params,
     streams: &Streams,
 ) -> PostAuthor {
-    // Nothing of the profile depends on the speed of deals.
+    // The speed of deals does not affect the profile.
     let persona = draw_traits(group, n, 1.0, params, streams).persona;
     PostAuthor { customer, group, n, persona, company: if group.is_enterprise() { seats } else { 0 } }
 }
@@ -220,7 +219,7 @@ mod tests {
         Group::parse("S1").expect("a group")
     }
 
-    /// The posts of a seventh day on which these subscribers are there and these have left.
+    /// The posts of a seventh day with these subscribers and departed customers.
     fn posts(rows: &[Subscriber], gave_up: &[GaveUp], lost: &[CompanyLost], seed: u64) -> Vec<Post> {
         static PARAMS: LazyLock<Params> = LazyLock::new(Params::shipped);
         let (params, streams) = (&*PARAMS, Streams::new(seed));
@@ -288,7 +287,7 @@ mod tests {
 
     #[test]
     fn the_first_post_falls_by_weight() {
-        // Weights 1 + 10 |S|: 1, 2, 3 and 15 for somebody who gave up at -0.2.
+        // Weights 1 + 10 |S|: 1, 2, 3, and 15 for an individual who cancelled at -0.2.
         let rows = [content(1, 0.0), content(2, 0.1), content(3, 0.2)];
         let runs = 4000;
         let mut first = [0.0; 4];

@@ -1,10 +1,10 @@
-//! How far a customer's post carries (docs/mechanics/market/social/engagement.md).
+//! Engagement of customers' posts (docs/mechanics/market/social/engagement.md).
 
 use crate::events::{Engagement, Sentiment};
 use crate::params::{Params, SocialParams};
 use crate::random::Stream;
 
-/// Draws behind a post's engagement: base likes and shares, then uniform numbers in order.
+/// Draws for the engagement of a post: base likes and shares, then uniform numbers in order.
 #[derive(Debug, Clone, Copy)]
 pub struct EngagementDraws {
     /// Base likes.
@@ -13,13 +13,13 @@ pub struct EngagementDraws {
     pub shares: u32,
     /// Uniform part of the factor.
     pub factor: f64,
-    /// Decides whether the post explodes.
+    /// Decides whether the post goes viral.
     pub spike: f64,
-    /// Uniform parts of an explosion: score, likes, shares.
+    /// Uniform parts of a viral spike: score, likes, shares.
     pub explosion: [f64; 3],
 }
 
-/// Engagement of a customer's post.
+/// Returns the engagement of a customer's post.
 pub fn engagement(sentiment: Sentiment, draws: &EngagementDraws, law: &SocialParams) -> Engagement {
     let factor = match sentiment {
         Sentiment::Negative => law.virality_negative_base + draws.factor,
@@ -40,8 +40,8 @@ pub fn engagement(sentiment: Sentiment, draws: &EngagementDraws, law: &SocialPar
     Engagement { likes: likes as u32, shares: shares as u32, virality }
 }
 
-/// Range of base likes and shares, both ends included; every group whose name begins with E is a company here,
-/// discoverable ones are not: the release sorts them so.
+/// Returns the ranges of base likes and shares, both ends included. As in the release, only groups whose name
+/// starts with E count as enterprises; discoverable enterprises do not.
 pub fn engagement_ranges(group_id: &str, params: &Params) -> [(u32, u32); 2] {
     let law = &params.social;
     if group_id.starts_with('E') {
@@ -57,7 +57,7 @@ pub fn engagement_ranges(group_id: &str, params: &Params) -> [(u32, u32); 2] {
     }
 }
 
-/// Draws the engagement of a post of a group's customer.
+/// Draws the engagement of a post by a customer of a group.
 pub fn draw_engagement(
     sentiment: Sentiment,
     group_id: &str,

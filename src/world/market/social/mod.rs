@@ -1,8 +1,7 @@
-//! Social media: who is heard, what the press writes, and what the company's own posts do
-//! (docs/mechanics/market/social/README.md).
+//! Social media: posts of customers, the press, and the player's posts (docs/mechanics/market/social/README.md).
 //!
-//! Posts of others act on nothing: they are information. The company's own posts act on leads, once the judge of
-//! `voice` has said how each group takes them ([`reach::receive`]).
+//! Posts of others have no effect; they are information. The player's posts affect leads after the judge of
+//! the `voice` crate has determined the reaction of each group ([`reach::receive`]).
 
 pub mod chronicle;
 pub mod crowd;
@@ -20,33 +19,33 @@ use crate::settings::Settings;
 use chronicle::Chronicle;
 use own::OwnPost;
 
-/// What social media remembers.
+/// The state of social media.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Social {
-    /// Number of the next post of others.
+    /// Number of the next post by others.
     pub next_post: u32,
     /// The player's posts.
     pub own: Vec<OwnPost>,
-    /// Day of the next round of posts about the economy; none before the first day.
+    /// Day of the next round of posts about the economy; `None` before the first day.
     pub next_round: Option<u32>,
-    /// What the public remembers of the company.
+    /// Record of the company's recent days.
     pub chronicle: Chronicle,
 }
 
 canonical! { Social { next_post, own, next_round, chronicle } }
 
 impl Social {
-    /// Social media on day 0.
+    /// Returns the state on day 0.
     pub fn opening(settings: &Settings) -> Social {
         Social { next_post: 1, own: Vec::new(), next_round: None, chronicle: Chronicle::opening(settings) }
     }
 
-    /// Whether a post of others has this number.
+    /// Returns whether a post by others has this number.
     pub fn has_post(&self, post: u32) -> bool {
         (1..self.next_post).contains(&post)
     }
 
-    /// Records a post of others and returns its number.
+    /// Records a post by others and returns its number.
     pub fn publish(
         &mut self,
         author: Option<PostAuthor>,

@@ -1,4 +1,4 @@
-//! What a subscriber has in mind: how loud they are, what happened to them, what weighs most
+//! A subscriber's opinion: the weight of their post, their problems, and the theme that matters most
 //! (docs/mechanics/market/social/opinions.md).
 
 use super::chronicle::Chronicle;
@@ -10,17 +10,16 @@ use crate::identifiers::Group;
 use crate::params::SocialParams;
 use crate::quality::{quota_demand, quota_factor, relationship_as_read, relationship_bonus, service_penalty};
 
-/// What everybody who may post has in common today.
+/// Shared inputs of today's opinions.
 #[derive(Clone, Copy)]
 pub struct Scene<'a> {
     /// The day.
     pub day: &'a DayContext<'a>,
-    /// The last four weeks.
+    /// Record of the last four weeks.
     pub chronicle: &'a Chronicle,
 }
 
 impl Scene<'_> {
-    /// Share of a row's demand that its quota covers today.
     #[inline]
     fn quota_factor(&self, block: &Block, at: usize) -> f64 {
         let rate = block.usage_rate[at];
@@ -28,7 +27,7 @@ impl Scene<'_> {
         quota_factor(self.day.morning.quotas[block.plan[at]], demand, &self.day.params.quality)
     }
 
-    /// What went wrong for a row today.
+    /// Returns the problems of a row today.
     #[inline]
     pub fn troubles(&self, block: &Block, at: usize) -> Troubles {
         Troubles {
@@ -39,7 +38,7 @@ impl Scene<'_> {
         }
     }
 
-    /// What makes a row loud; `before` is its satisfaction before today's update.
+    /// Returns the inputs of a row's post weight; `before` is its satisfaction before today's update.
     #[inline]
     pub fn loudness(&self, group: Group, block: &Block, at: usize, before: f64) -> Loudness {
         let satisfaction = block.satisfaction[at];
@@ -49,13 +48,13 @@ impl Scene<'_> {
             influencer: self.day.params.group(group).influencer,
             days_subscribed: self.day.day() - block.start_day[at],
             events: self.troubles(block, at).count(),
-            // Contracts last a month, so nobody is bound for long.
+            // Contracts last only a month, so no customer counts as locked in.
             contract_locked: false,
             seats: if group.is_enterprise() { block.seats[at].trunc() } else { 1.0 },
         }
     }
 
-    /// What a row would write about; `u` is a uniform draw.
+    /// Returns the opinion of a row; `u` is a uniform draw.
     pub fn opinion(&self, group: Group, block: &Block, at: usize, before: f64, u: f64) -> Opinion {
         let troubles = self.troubles(block, at);
         let change = block.satisfaction[at] - before;
@@ -77,7 +76,7 @@ impl Scene<'_> {
         }
     }
 
-    /// What a row lacks, each in quality it costs.
+    /// Returns a row's complaints with the quality that each costs.
     fn complaints(&self, group: Group, block: &Block, at: usize) -> Vec<(Theme, f64)> {
         let quality = &self.day.params.quality;
         let delivered = self.day.morning.delivered(group, block.plan[at]);
@@ -97,13 +96,13 @@ impl Scene<'_> {
         ]
     }
 
-    /// What a row values, each in quality it brings.
+    /// Returns what a row values, with the quality that each adds.
     fn praises(&self, group: Group, block: &Block, at: usize) -> Vec<(Theme, f64)> {
         let quality = &self.day.params.quality;
         let delivered = self.day.morning.delivered(group, block.plan[at]);
         let surplus = (delivered - block.q_min[at]).max(0.0);
         let (_, share) = self.price_of_quality(block, at);
-        // What a bad day would have cost and these weeks did not.
+        // The quality that bad service would have cost minus the quality it did cost in recent weeks.
         let calm = (quality.service_overload_weight - self.mean_penalty()).max(0.0);
         vec![
             (Theme::Price, surplus * (1.0 - share)),
@@ -115,7 +114,7 @@ impl Scene<'_> {
         ]
     }
 
-    /// How much quality the price of a row asks for, and how much of its budget the price takes, 0..=1.
+    /// Returns the quality that the price of a row requires, and the share of its budget that the price takes, 0..=1.
     fn price_of_quality(&self, block: &Block, at: usize) -> (f64, f64) {
         let needed = (block.required[at] - block.q_min[at]).max(0.0);
         let budget = block.effective_c_max[at];
@@ -128,7 +127,7 @@ impl Scene<'_> {
         relationship_bonus(relationship_as_read(block.relationship[at], quality), quality)
     }
 
-    /// Mean quality lost to bad service over the last two weeks.
+    /// Returns the mean quality lost to bad service over the last two weeks.
     fn mean_penalty(&self) -> f64 {
         const DAYS: usize = 14;
         let penalty = |overload, outage| service_penalty(overload, outage, &self.day.params.quality);
@@ -139,7 +138,7 @@ impl Scene<'_> {
     }
 }
 
-/// Why somebody writes: the first trouble, else a change of mood, else nothing in particular.
+/// Returns the cause of a post: the first problem, otherwise a change of satisfaction, otherwise general.
 pub fn cause(troubles: Troubles, change: f64, law: &SocialParams) -> Cause {
     match troubles {
         Troubles { overload: true, .. } => Cause::Overload,
@@ -152,7 +151,7 @@ pub fn cause(troubles: Troubles, change: f64, law: &SocialParams) -> Cause {
     }
 }
 
-/// A theme drawn by what each is worth; quality where nothing is.
+/// Picks a theme by weight; quality if all weights are zero.
 pub fn theme(worths: &[(Theme, f64)], u: f64) -> Theme {
     let total: f64 = worths.iter().map(|(_, worth)| worth).sum();
     let mut left = u * total;

@@ -1,4 +1,4 @@
-//! The player's posts, and what reactions to them do to leads (docs/mechanics/market/social/own.md).
+//! The player's posts and their effect on leads (docs/mechanics/market/social/own.md).
 
 use crate::canonical::canonical;
 use crate::identifiers::{ByGroup, Group};
@@ -13,24 +13,24 @@ pub struct OwnPost {
     pub content: String,
     /// Number of the post it answers.
     pub reply_to: Option<u32>,
-    /// Reactions in -1..=1 by group, once it was judged; 0 for groups that were not known.
+    /// Reactions in -1..=1 by group after it was judged; 0 for unknown groups.
     pub effects: Option<ByGroup<f64>>,
     /// How often it was seen.
     pub views: u64,
-    /// Numbers of the comments it got.
+    /// Numbers of its comments.
     pub comments: Vec<u32>,
 }
 
 canonical! { OwnPost { day, content, reply_to, effects, views, comments } }
 
 impl OwnPost {
-    /// A post that nobody has read yet.
+    /// Creates a post that has not been judged.
     pub fn new(day: u32, content: impl Into<String>, reply_to: Option<u32>) -> OwnPost {
         OwnPost { day, content: content.into(), reply_to, effects: None, views: 0, comments: Vec::new() }
     }
 }
 
-/// What one reaction adds to the factor on leads at an age in days; reactions below 0.6 add nothing.
+/// Returns the change of the lead factor by one reaction at an age in days; reactions below 0.6 have no effect.
 pub fn post_effect(effect: f64, age_days: u32, law: &CeoPosts) -> f64 {
     let (size, threshold) = (effect.abs(), law.multiplier_viral_threshold);
     if size < threshold {
@@ -40,7 +40,7 @@ pub fn post_effect(effect: f64, age_days: u32, law: &CeoPosts) -> f64 {
     effect.signum() * strength * libm::exp2(-f64::from(age_days) / law.multiplier_half_life_days)
 }
 
-/// Factor on the leads of a group: 1 plus the effects of all posts, 0.75..=1.25.
+/// Returns the factor on the leads of a group: 1 plus the effects of all posts, 0.75..=1.25.
 pub fn social_multiplier(group: Group, day: u32, posts: &[OwnPost], law: &CeoPosts) -> f64 {
     let judged = posts.iter().filter(|post| post.day <= day);
     let sum: f64 = judged
@@ -83,7 +83,7 @@ mod tests {
             (&[(0, 1.0), (7, 1.0)], 9, 1.188740131237),
         ] {
             let own = multiplier(posts, day);
-            assert!((own - expected).abs() < 1e-11, "{posts:?} on {day}: {own} instead of {expected}");
+            assert!((own - expected).abs() < 1e-11, "{posts:?} on {day}: got {own}, expected {expected}");
         }
     }
 

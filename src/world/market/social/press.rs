@@ -1,4 +1,4 @@
-//! What the press writes about rivals and the economy (docs/mechanics/market/social/press.md).
+//! Press posts about competitors and the economy (docs/mechanics/market/social/press.md).
 
 use super::Social;
 use crate::events::{Engagement, Facts, Matter, Reading, Sentiment, Severity, Trend};
@@ -7,17 +7,17 @@ use crate::market::economy::Economy;
 use crate::params::{Competitor, MacroEconomy, Params};
 use crate::random::{Part, Stream, Streams};
 
-/// The event the press writes about: the oldest one that is not over.
+/// Returns the event that the press covers: the oldest one still within its coverage period.
 pub fn topic<'a>(day: u32, events: &'a [Event], law: &Competitor) -> Option<&'a Event> {
     events.iter().find(|event| event.day + law.competitor_event_post_days >= day)
 }
 
-/// The size of an event as the press sees it; `u` is uniform within the range of misjudgement.
+/// Returns the size of an event as the press estimates it; `u` is uniform within the error range.
 pub fn estimated_boost(boost: f64, u: f64) -> f64 {
     (boost + u * boost).max(0.0)
 }
 
-/// Views, likes and shares of a post on a rival: int(base (1 + U)), int(views ratio (1 + U)).
+/// Returns views, likes and shares of a post about a competitor: int(base (1 + U)), int(views ratio (1 + U)).
 pub fn rival_engagement(
     severity: Severity,
     [views, likes, shares]: [f64; 3],
@@ -38,7 +38,7 @@ pub fn rival_engagement(
     }
 }
 
-/// The posts on rivals of a day.
+/// Writes today's posts about competitors.
 pub fn write_about_rivals(
     day: u32,
     events: &[Event],
@@ -63,7 +63,7 @@ pub fn write_about_rivals(
     }
 }
 
-/// Tone of posts on the economy.
+/// Returns the tone of posts about the economy.
 pub fn economy_tone(trend: Trend) -> Sentiment {
     match trend {
         Trend::StrongExpansion | Trend::Expansion => Sentiment::Positive,
@@ -72,7 +72,7 @@ pub fn economy_tone(trend: Trend) -> Sentiment {
     }
 }
 
-/// Views, likes and shares of a post on the economy.
+/// Returns the engagement of a post about the economy.
 pub fn economy_engagement([views, likes, shares]: [f64; 3], law: &MacroEconomy) -> Engagement {
     let views = (law.macro_post_views_base * (1.0 + views)).trunc();
     let of_views = |ratio: f64, u: f64| (views * ratio * (1.0 + u)).trunc() as u32;
@@ -83,8 +83,8 @@ pub fn economy_engagement([views, likes, shares]: [f64; 3], law: &MacroEconomy) 
     }
 }
 
-/// The posts on the economy of a day: one for each published reading, and now and then a round of voices who
-/// feel the economy as it is today.
+/// Writes today's posts about the economy: one for each published reading, and at intervals a round of
+/// opinions about its current state.
 pub fn write_about_the_economy(
     day: u32,
     economy: &Economy,

@@ -1,4 +1,4 @@
-//! How far the player's posts reach: views, comments, and what the inbox says
+//! Reach of the player's posts: views, comments, and the notification in the inbox
 //! (docs/mechanics/market/social/reach.md).
 
 use super::Social;
@@ -9,7 +9,7 @@ use crate::identifiers::{ByGroup, Group};
 use crate::params::{CeoPosts, Params};
 use crate::random::{Part, Stream, Streams};
 
-/// How the groups take a post of the player.
+/// The reactions of groups to a post of the player.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
     /// Number of the post, from 1.
@@ -18,7 +18,7 @@ pub struct Verdict {
     pub effects: Vec<(Group, f64)>,
 }
 
-/// Views of a group before the chance of the day: base f, f = 1..3 up to the threshold, 3..100 above it.
+/// Returns the views of a group before noise: base f, f = 1..3 up to the threshold, 3..100 above it.
 pub fn expected_views(effect: f64, subscribers: u32, law: &CeoPosts) -> f64 {
     let base = law.views_base_min.max(law.views_base_per_subscriber * f64::from(subscribers));
     let (size, threshold) = (effect.abs(), law.viral_threshold);
@@ -32,7 +32,7 @@ pub fn expected_views(effect: f64, subscribers: u32, law: &CeoPosts) -> f64 {
     base * factor
 }
 
-/// The judged posts get their effects, views and comments; the inbox says so.
+/// Applies reactions to posts, and creates views, comments and notifications.
 pub fn receive(
     social: &mut Social,
     customers: &Customers,
@@ -87,7 +87,7 @@ fn receive_one(
     (own.effects, own.views, own.comments) = (Some(effects), views, comments);
 }
 
-/// Any active subscriber of a group; nobody where it has none.
+/// Returns a random active subscriber of a group, or `None` if it has none.
 fn pick_author(
     group: Group,
     customers: &Customers,
@@ -138,7 +138,7 @@ mod tests {
             [(0.3, 100.0), (0.6, 150.0), (0.7, 360.421712), (0.8, 866.025404), (1.0, 5000.0), (-0.3, 100.0)]
         {
             let views = expected_views(effect, 0, &law);
-            assert!((views - expected).abs() < 1e-6, "{effect}: {views} instead of {expected}");
+            assert!((views - expected).abs() < 1e-6, "{effect}: got {views}, expected {expected}");
         }
         assert_eq!(expected_views(0.0, 4000, &law), 400.0);
     }
@@ -168,7 +168,7 @@ mod tests {
         );
         let tones: Vec<Sentiment> = facts.posts.iter().map(|post| post.sentiment).collect();
         assert_eq!(tones, [Sentiment::Negative, Sentiment::Positive]);
-        assert!(facts.posts.iter().all(|post| post.author.is_none()), "nobody has subscribed yet");
+        assert!(facts.posts.iter().all(|post| post.author.is_none()), "there are no subscribers yet");
         let seen = &facts.own_posts_seen[0];
         assert_eq!((seen.post, seen.comments.as_slice()), (1, &[1, 2][..]));
         let own = &world.market.social.own[0];

@@ -3,7 +3,7 @@
 use crate::events::Sentiment;
 use crate::params::{SentimentChances, SocialParams};
 
-/// Chances of a sentiment at a satisfaction.
+/// Returns the probabilities of sentiments at a satisfaction.
 pub fn sentiment_chances(satisfaction: f64, law: &SocialParams) -> &SentimentChances {
     match satisfaction {
         s if s >= law.sentiment_band_very_positive_min => &law.sentiment.very_positive,
@@ -14,7 +14,7 @@ pub fn sentiment_chances(satisfaction: f64, law: &SocialParams) -> &SentimentCha
     }
 }
 
-/// Sentiment of a post from a uniform draw.
+/// Returns the sentiment of a post from a uniform draw.
 pub fn sentiment(satisfaction: f64, u: f64, law: &SocialParams) -> Sentiment {
     let chances = sentiment_chances(satisfaction, law);
     if u < chances.positive {

@@ -1,9 +1,8 @@
-//! How loudly somebody is heard: the weights behind the posts of a day
-//! (docs/mechanics/market/social/crowd.md#weights).
+//! Weights of potential authors of a day (docs/mechanics/market/social/crowd.md#weights).
 
 use crate::params::SocialParams;
 
-/// What weighs in a subscriber's chance to be heard today.
+/// Inputs of a subscriber's post weight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Loudness {
     /// Satisfaction after today's update.
@@ -14,15 +13,15 @@ pub struct Loudness {
     pub influencer: bool,
     /// Days subscribed.
     pub days_subscribed: u32,
-    /// Events felt today: overload, outage, issue, quota.
+    /// Number of problems today: overload, outage, issue, quota.
     pub events: u32,
-    /// Whether an unhappy company is bound by a contract.
+    /// Whether an unhappy enterprise is locked in by a contract.
     pub contract_locked: bool,
     /// Whole seats.
     pub seats: f64,
 }
 
-/// Weight of a subscriber.
+/// Returns the weight of a subscriber.
 #[inline]
 pub fn post_weight(voice: &Loudness, law: &SocialParams) -> f64 {
     let s = voice.satisfaction;
@@ -48,13 +47,13 @@ pub fn post_weight(voice: &Loudness, law: &SocialParams) -> f64 {
     finite(weight * voice.seats.max(1.0), law)
 }
 
-/// Weight of an individual who cancelled today.
+/// Returns the weight of an individual who cancelled today.
 pub fn cancelled_weight(satisfaction: f64, seats: f64, law: &SocialParams) -> f64 {
     let bad = satisfaction.min(0.0).abs();
     finite(law.churn_weight_base * seats * (1.0 + law.churn_weight_negative_satisfaction_coef * bad), law)
 }
 
-/// Weight of a company that was lost today.
+/// Returns the weight of an enterprise that was lost today.
 pub fn lost_company_weight(seats: f64, law: &SocialParams) -> f64 {
     finite(law.enterprise_churn_weight_base * seats.max(1.0), law)
 }
@@ -100,7 +99,7 @@ mod tests {
             (Loudness { satisfaction: -40.0, ..PLAIN }, 12_832_401.0),
         ] {
             let weight = post_weight(&voice, &law);
-            assert!((weight / expected - 1.0).abs() < 1e-12, "{voice:?}: {weight} instead of {expected}");
+            assert!((weight / expected - 1.0).abs() < 1e-12, "{voice:?}: got {weight}, expected {expected}");
         }
         assert_eq!(cancelled_weight(-0.2, 1.0, &law), 15.0);
         assert_eq!(cancelled_weight(0.3, 1.0, &law), 5.0);

@@ -106,7 +106,7 @@ fn wrong_files_name_line_and_key() {
         ("pitfall = \"costly\"", "pitfall = \"cheap\"", "bad.pitfall"),
         ("{after}", "{before}", "line 38, measured"),
         ("hints = [\"Wait.\"]", "hints = []", "one to three hints"),
-        ("weeks = 2\nhints = [\"Wait", "weeks = 0\nhints = [\"Wait", "a week at least"),
+        ("weeks = 2\nhints = [\"Wait", "weeks = 0\nhints = [\"Wait", "at least one week"),
         ("[[bad.play]]\nweek = 1", "[[bad.play]]\nweek = 0", "no week 0 in which a student decides"),
         ("answer = 2", "answer = 3", "the number of one of them"),
         ("at_least = 1\n", "at_least = 1\nat_most = 2\n", "one of at_least, at_most and relative"),

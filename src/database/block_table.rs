@@ -355,7 +355,7 @@ unsafe impl<K: BlockKind> VTabCursor for BlockCursor<'_, K> {
         for ((at, value), letter) in values.iter().enumerate().zip(plan.unwrap_or_default().chars()) {
             let number = match value.data_type() {
                 Type::Integer | Type::Real => values.get::<f64>(at)?,
-                // Nothing equals NULL.
+                // NULL equals no value.
                 Type::Null => f64::NAN,
                 Type::Text => number_of(&values.get::<String>(at)?),
                 _ => continue,
@@ -522,7 +522,10 @@ mod tests {
             (seen.usage.rows_looked_through(), found)
         };
         let (once, found) = ask(1);
-        assert!(once >= 15 && found == 5, "a run of three rows on each of five days: {once} rows, {found} found");
+        assert!(
+            once >= 15 && found == 5,
+            "a run of three rows on each of five days: {once} rows, {found} found"
+        );
         // Scanning the thirty rows twice costs as much as building an index.
         for lookups in [5, 100, 5_000] {
             let (rows, found) = ask(lookups);

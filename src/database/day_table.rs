@@ -373,7 +373,7 @@ unsafe impl<K: DayKind> VTabCursor for DayCursor<'_, K> {
                 // Blobs are greater than every number.
                 Type::Blob if column != KIND && column != K::TEXT => f64::INFINITY,
                 Type::Integer | Type::Real if column != KIND && column != K::TEXT => values.get::<f64>(at)?,
-                // Nothing equals NULL.
+                // NULL equals no value.
                 Type::Null => f64::NAN,
                 // No kind is a number.
                 _ if column == KIND => f64::NAN,
@@ -488,7 +488,11 @@ mod tests {
             .expect("a copy");
         let count: i64 =
             connection.query_row("SELECT count(*) FROM plain", [], |row| row.get(0)).expect("rows");
-        assert_eq!(count, 15 + 1 + 2 + 3 + 3 + 1, "notices of the days, repeated ones of days 2 to 5, a call");
+        assert_eq!(
+            count,
+            15 + 1 + 2 + 3 + 3 + 1,
+            "notices of the days, repeated ones of days 2 to 5, a call"
+        );
         let conditions = [
             "1",
             "day = 3",

@@ -293,8 +293,8 @@ impl Worker<'_> {
     fn transact(&mut self, pending: &mut Vec<Entry>, position: &Position) -> rusqlite::Result<()> {
         let gate = self.gate.clone();
         let close = || gate.write().unwrap_or_else(|poisoned| poisoned.into_inner());
-        // Without a write-ahead log, close the gate first: otherwise a reader behind the gate and the writer in front of it
-        // would wait for each other.
+        // Without a write-ahead log, close the gate first: otherwise a reader that passed the gate would wait for the
+        // writer, and the writer at the gate for the reader.
         let early = (!self.readers_go_on).then(close);
         let transaction = self.connection.transaction()?;
         for entry in pending.drain(..) {

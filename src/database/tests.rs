@@ -199,7 +199,7 @@ fn open_issues_agree_with_the_world() {
     let mut expected: Vec<Vec<Cell>> = Vec::new();
     for (_, block) in company.world.customers.blocks() {
         for at in (0..block.len()).filter(|at| block.open_issue_days[*at] > 0) {
-            // The simulator counts the opening day, the table does not.
+            // On the opening day, the counter of the simulator is 1 and the age in the table is 0.
             let aged = i64::from(block.open_issue_days[at]) - 1;
             expected.push(vec![Cell::Integer(i64::from(block.customer[at])), Cell::Integer(aged)]);
         }

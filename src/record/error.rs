@@ -19,8 +19,8 @@ pub enum RunError {
         path: PathBuf,
         /// Error of the operating system.
         error: std::io::Error,
-        },
-        /// A file of a run was changed after it was written.
+    },
+    /// A file of a run was changed after it was written.
     #[error("{path}, line {line}: {problem}. {safe}", path = .path.display())]
     Damaged {
         /// Path of the file.

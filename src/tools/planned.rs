@@ -126,7 +126,9 @@ impl<A> Reply<A> {
     ) -> Result<A, Refusal> {
         match self {
             Reply::Known(answer) => Ok(answer),
-            Reply::Drawn(answer) => Ok(answer(resolved).expect("a resolved command has the kind of its command")),
+            Reply::Drawn(answer) => {
+                Ok(answer(resolved).expect("a resolved command has the kind of its command"))
+            }
             Reply::Output(script, answer) => run(&script).map(answer),
         }
     }

@@ -1,4 +1,4 @@
-//! Two days of a run, and two runs on a day: what differs is what was changed, and looking is recorded.
+//! Comparison of two days of a run and of two runs on a day: exactly the changed values differ, and inspections are recorded.
 
 use std::path::Path;
 
@@ -165,7 +165,7 @@ fn a_parameter_that_differs_leads() {
     };
     assert_eq!(parameters(&mut session, 14, 16), []);
     assert_eq!(parameters(&mut session, 16, 17), [(key.to_owned(), old, json!(0.5))]);
-    // Leads of a day are those of individuals and those of companies.
+    // Leads of a day include individuals and enterprises.
     let found = session.inspect().difference_of_days(3, 20).expect("a look");
     let sum: f64 =
         found.figures.iter().filter(|(name, ..)| name.ends_with("leads of the day")).map(|own| own.2).sum();

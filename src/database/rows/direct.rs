@@ -136,7 +136,7 @@ pub(super) fn discovery(transaction: &Transaction<'_>, facts: &Facts) -> rusqlit
     )?;
     for (group, own) in &facts.knowledge {
         let hidden = !group.initially_known();
-        // Groups that are known from the start have no discovery day.
+        // Groups that are known from the start were not studied on day 0.
         let studied = own.last_research_day.filter(|day| hidden || *day > 0);
         write.execute(params![group.id(), own.level, hidden, own.discovered_day, studied])?;
     }

@@ -38,8 +38,8 @@ impl Derived {
             Ok(own) if own.id != told.id && !folder.ends_with(&told.id) => (own, None),
             Ok(own) => {
                 let manifest = with_what_no_line_says(told, &own);
-                let problem = difference_in_names(&own, &manifest)
-                    .map(|names| format!("run.toml differed ({names})"));
+                let problem =
+                    difference_in_names(&own, &manifest).map(|names| format!("run.toml differed ({names})"));
                 (manifest, problem)
             }
         };

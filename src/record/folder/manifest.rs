@@ -130,8 +130,7 @@ impl Manifest {
             });
         }
         if self.fault.is_some() && self.mode != Mode::Debug {
-            let message =
-                format!("run {} names a seeded fault, which only a debug run can have", self.id);
+            let message = format!("run {} names a seeded fault, which only a debug run can have", self.id);
             return Err(RunError::NotPossible(message));
         }
         Ok(self)

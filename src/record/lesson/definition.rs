@@ -235,7 +235,10 @@ impl TryFrom<GuessFile> for Guess {
             },
             (Some(choices), Some(answer)) if figure.is_none() && sql.is_none() => {
                 if choices.len() < 2 || !(1..=choices.len()).contains(&answer) {
-                    return Err("a guess needs at least two choices, and answer must be the number of one of them".to_owned());
+                    return Err(
+                        "a guess needs at least two choices, and answer must be the number of one of them"
+                            .to_owned(),
+                    );
                 }
                 GuessForm::Choice { choices, answer: answer - 1 }
             }

@@ -51,8 +51,7 @@ impl TryFrom<MeasurementFile> for Measurement {
         let source = match (file.figure.as_deref(), file.sql) {
             (Some("cash"), None) => NumberSource::Cash,
             (Some(name), None) => {
-                let figure =
-                    WeekFigure::named(name).ok_or_else(|| format!("there is no figure {name}"))?;
+                let figure = WeekFigure::named(name).ok_or_else(|| format!("there is no figure {name}"))?;
                 if figure.of_week(&WeekFigures::default()).is_none() {
                     return Err(format!("{name} is not measured in lessons; use sql"));
                 }

@@ -19,7 +19,11 @@ pub(super) fn unsound(lesson: &Lesson) -> Option<Unsound> {
     let plan = &lesson.plan;
     let wrong = |place: &str, key, problem: String| Unsound { place: place.to_owned(), key, problem };
     if plan.parts.is_empty() || plan.parts.iter().any(|part| part.steps.is_empty()) {
-        return Some(wrong("[[part", "part", "a lesson needs a part, and every part needs a step".to_owned()));
+        return Some(wrong(
+            "[[part",
+            "part",
+            "a lesson needs a part, and every part needs a step".to_owned(),
+        ));
     }
     plan.parts
         .iter()
@@ -68,7 +72,10 @@ fn unsound_part(part: &LessonPart) -> Option<Unsound> {
     Some(Unsound {
         place: format!("week = {}", early.week),
         key: "start.week",
-        problem: format!("the start has {} weeks; calls in later weeks belong to the student", part.start_weeks),
+        problem: format!(
+            "the start has {} weeks; calls in later weeks belong to the student",
+            part.start_weeks
+        ),
     })
 }
 

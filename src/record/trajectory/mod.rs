@@ -158,7 +158,8 @@ pub fn damaged_at(path: &Path) -> impl Fn((usize, String)) -> RunError + '_ {
 }
 
 /// Message for a line that has a correct sum but not the hash of the previous line.
-pub const DOES_NOT_FOLLOW: &str = "the line does not have the hash of the previous line: one of the two was changed";
+pub const DOES_NOT_FOLLOW: &str =
+    "the line does not have the hash of the previous line: one of the two was changed";
 
 /// Hint for recovering the lines before a damaged one.
 pub const BRANCH_THEM: &str = ": `novamind runs rescue` creates a branch from them";

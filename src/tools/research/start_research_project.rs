@@ -39,7 +39,11 @@ static SPEC: Spec = Spec {
     writes: &["ledger", "research_projects"],
     refusals: &["rd_tier_unknown", "rd_in_progress", "insufficient_funds"],
     returns: &[
-        Output { name: "project_id", kind: "text", doc: "t<tier>_<n>, where n counts the starts of the tier" },
+        Output {
+            name: "project_id",
+            kind: "text",
+            doc: "t<tier>_<n>, where n counts the starts of the tier",
+        },
         Output { name: "tier", kind: "integer", doc: "1 to 20" },
         Output { name: "name", kind: "text", doc: "name of the tier" },
         Output { name: "cost", kind: "integer", doc: "$" },

@@ -637,7 +637,7 @@ fn days_of_a_file_are_read_when_their_table_is_named_and_have_to_be_whole() {
     assert_eq!(damaged, Ok(1));
     assert_eq!(rows(&reader, ledger), before[1], "other tables still answer");
     assert!(!reader.found_damage());
-    let refused = reader.ask(usage, LIMITS).expect_err("what was read before is not what the file holds now");
+    let refused = reader.ask(usage, LIMITS).expect_err("the file has changed since it was read");
     assert!(refused.message.starts_with("world.db is damaged") && reader.found_damage(), "{refused:?}");
     for sql in
         ["SELECT 1 WHERE EXISTS (SELECT 1 FROM daily_usage)", "SELECT (SELECT count(*) FROM daily_usage)"]
@@ -670,7 +670,7 @@ fn a_database_is_continued_where_it_stands_or_made_anew() {
     drop(projector);
     std::fs::write(folder.path().join("world.db"), b"not a database at all, but long enough to look")
         .expect("a file");
-    let (projector, found) = Projector::start(location, 1, params, |_| true).expect("it is made anew");
+    let (projector, found) = Projector::start(location, 1, params, |_| true).expect("it is rebuilt");
     assert_eq!(found, None);
     drop(projector);
 }

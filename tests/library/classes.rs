@@ -355,7 +355,7 @@ fn a_run_is_handed_out_under_labels_and_names_of_their_own() {
     assert_eq!(
         ClassCollection::read(&school.folder()).expect("kept"),
         collection,
-        "quotas without limits are no numbers"
+        "quotas without limits are not numbers"
     );
     let verdicts: Vec<RunVerdict> = collection.runs.iter().map(|run| run.verdict).collect();
     assert_eq!(verdicts, [RunVerdict::NotFinished, RunVerdict::NotFinished]);

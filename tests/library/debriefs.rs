@@ -174,7 +174,7 @@ fn nothing_is_told_of_the_good_play_before_the_part_is_over() {
     let mut session = student(folder.path());
     guess_in_lesson(&mut session, 0.5).expect("a guess");
     week(&mut session);
-    assert_eq!(PlayedPart::of(&session).expect_err("it goes on").code, "lesson_not_over");
+    assert_eq!(PlayedPart::of(&session).expect_err("it continues").code, "lesson_not_over");
     let other = Session::create(NewRun::default(), &Configuration::shipped()).expect("a run");
     assert_eq!(PlayedPart::of(&other).expect_err("no lesson").code, "not_in_a_lesson");
 }

@@ -345,7 +345,7 @@ fn wishes_for_another_plan_are_in_the_rows() {
             wishes += 1;
         }
     }
-    assert!(wishes > 0, "nobody asked for another plan");
+    assert!(wishes > 0, "no subscriber asked for another plan");
 }
 
 /// The tables have the fields of rules: price and plan that an enterprise named, and the last offer.

@@ -197,7 +197,7 @@ fn a_fault_stays_with_its_run_and_no_word_names_it() {
         assert_eq!(
             session.company().debug_parameters().and_then(|own| own.changed()).expect("a debug run").in_force,
             [],
-            "it is no parameter"
+            "it is not a parameter"
         );
         let own = place(&session);
         let branch = session.branch(3, Mode::Debug).expect("a branch");
@@ -222,7 +222,7 @@ fn a_fault_stays_with_its_run_and_no_word_names_it() {
         let other = Fault::ALL.into_iter().find(|other| *other != fault).expect("another");
         let mut forged = manifest_of(&own).expect("of the line");
         forged.fault = Some(other);
-        assert!(forged.params().is_err(), "the digest tells them apart");
+        assert!(forged.params().is_err(), "the digests differ");
         forged.fault = None;
         assert!(forged.params().is_err());
     }

@@ -357,7 +357,7 @@ fn a_run_in_which_a_parameter_was_set_is_not_compared_with_others() {
     set(&mut session, "operations.base_outage_prob", json!(0.9), Some(100));
     assert!(session.company().observe().has_own_parameters && own(&id));
     set(&mut session, "operations.base_outage_prob", before, None);
-    assert!(session.company().observe().has_own_parameters, "what was set stays on record");
+    assert!(session.company().observe().has_own_parameters, "the settings stay in the record");
     let changed = session.company().debug_parameters().and_then(|own| own.changed()).expect("a debug run");
     assert_eq!(
         (changed.scenario.as_deref(), changed.in_force.len(), changed.waiting.len()),

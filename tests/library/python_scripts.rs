@@ -231,7 +231,7 @@ fn records_hold_what_was_said_and_run_nothing() {
     assert_eq!(
         asked.collect::<Vec<_>>(),
         [(Some(QuerySource::Script), Some(1))],
-        "calculations are no lines"
+        "calculations are not lines"
     );
     assert_eq!(verify(&folder).expect("it verifies").states, 1);
     std::fs::remove_file(folder.join("snapshot.bin")).ok();

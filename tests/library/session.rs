@@ -452,7 +452,7 @@ fn a_post_is_read_judged_answered_and_told_about() {
     open_shop(&mut session);
     weeks(&mut session, 2);
     let complaint = number(&mut session, "SELECT max(post_id) FROM social_media_posts WHERE day % 7 = 0");
-    assert!(complaint > 0.0, "customers were heard on the seventh day");
+    assert!(complaint > 0.0, "customers posted on the seventh day");
     // A real discount, posted for a group that values discounts.
     call(&mut session, "set_promotion", json!({"by_group": {"S1": 2}}));
     let content = "Every plan is $2 off from today: no tricks, cancel anytime. We cut the price because students asked for \

@@ -30,7 +30,7 @@ fn runs_of_other_builds_reach_the_same_states() {
     for build in ["development", "release"] {
         let found = verify(&recorded(build)).unwrap_or_else(|error| {
             panic!(
-                "{error}\nIf the mechanics were changed on purpose, raise MECHANICS and record the runs anew."
+                "{error}\nIf the mechanics were changed on purpose, increase MECHANICS and record the runs again."
             )
         });
         assert_eq!((found.day, found.states), (70, 10), "{build}");
@@ -76,7 +76,7 @@ fn a_run_of_a_scenario_that_has_another_key_since_reaches_the_same_states() {
     assert_eq!(
         (found.day, found.states),
         (14, 2),
-        "its answers are compared, whatever form their numbers had"
+        "its results are compared in any notation of numbers"
     );
     let session = Session::open(&folder, Access::Read, true).expect("it opens");
     assert!(!session.company().observe().has_own_parameters, "it plays the scenario as its version had it");

@@ -84,7 +84,6 @@ struct Made<R: Run> {
     bytes: usize,
 }
 
-/// Lookups of customers in a range of days.
 struct Lookups<R: Run> {
     /// Scanned rows.
     rows: usize,

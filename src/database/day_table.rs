@@ -94,7 +94,6 @@ impl Comparison {
     }
 }
 
-/// A constraint that the table handles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Handled {
     column: c_int,
@@ -122,7 +121,6 @@ impl Handled {
     }
 }
 
-/// The order of the returned rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Order {
     /// By number, and therefore by day.
@@ -227,7 +225,6 @@ unsafe impl<'vtab, K: DayKind> VTab<'vtab> for DayTable<K> {
     }
 }
 
-/// One scan of a day.
 #[derive(Debug, Clone, Copy)]
 struct Pass {
     /// Position among the days.

@@ -10,7 +10,6 @@ use super::interrupt::Ticket;
 use super::query::{Fault, Limits, QueryConnection, QueryError};
 use super::rows::{NOTHING, Value, insert_rows, real, text, whole};
 
-/// Maximum time for filling a table.
 const LONGEST: Duration = Duration::from_secs(600);
 
 impl QueryConnection {

@@ -16,7 +16,6 @@ use novamind_world::events::{LossCause, UsageRows};
 /// Loads the days of one table. Returns `None` if a day is damaged.
 type Loader = fn(&Connection, &mut BlockStore) -> Option<()>;
 
-/// The packed tables with their loaders.
 const LOADERS: [(&str, Loader); 5] = [
     ("daily_usage", load_usage),
     ("ads_revenue", load_ads),

@@ -9,7 +9,6 @@ use rusqlite::{Connection, ErrorCode, OpenFlags};
 /// Page cache of a connection; negative values are KiB for SQLite.
 const CACHE: i64 = -65_536;
 
-/// Number of cached compiled statements of a connection.
 const STATEMENTS: usize = 64;
 
 /// Location of a database.

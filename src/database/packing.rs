@@ -117,7 +117,6 @@ pub(super) type Kinds = u32;
 
 /// A packed day with rows at places from 0, each of a kind.
 pub(super) trait PackedRows {
-    /// Returns the day.
     fn day(&self) -> u32;
     /// Returns the number of the first row.
     fn first(&self) -> u64;

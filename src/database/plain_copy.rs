@@ -44,7 +44,6 @@ DROP TABLE ads_blocks;
 DROP TABLE notice_blocks;
 DROP TABLE repeated_losses;";
 
-/// Pages per copy step.
 const PAGES: i32 = 4096;
 
 impl Projector {

@@ -8,13 +8,11 @@ use super::tokens::tokens;
 /// Column of a plan with the number of the parent step; the first column is the number of the step.
 const PARENT: usize = 1;
 
-/// Column of a plan with the description.
 const DETAIL: usize = 3;
 
 /// Replacement of internal names.
 const MASK: &str = "\u{2026}";
 
-/// Lower-case words of plans.
 const WORDS: [&str; 3] = ["rowid", "subquery", "join"];
 
 /// Masks the plan of a statement. Removes the lookups of words, which are internal.

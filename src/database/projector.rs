@@ -33,7 +33,6 @@ pub struct Position {
 }
 
 impl Position {
-    /// Returns a checksum of the position.
     fn check(&self) -> String {
         blake3::hash(format!("{} {}", self.seq, self.line_hash).as_bytes()).to_hex()[..16].to_owned()
     }
@@ -76,7 +75,6 @@ pub struct Projector {
     failed: Failed,
 }
 
-/// The first error of writing the database.
 #[derive(Clone, Default)]
 struct Failed(Arc<Mutex<Option<ProjectionError>>>);
 
@@ -289,7 +287,6 @@ impl Worker<'_> {
         }
     }
 
-    /// Writes the pending entries in one transaction.
     fn transact(&mut self, pending: &mut Vec<Entry>, position: &Position) -> rusqlite::Result<()> {
         let gate = self.gate.clone();
         let close = || gate.write().unwrap_or_else(|poisoned| poisoned.into_inner());

@@ -61,7 +61,6 @@ pub struct Limits {
     pub steps: Option<u64>,
 }
 
-/// Maximum bytes of text in a result.
 const MOST_TEXT: usize = 64 << 20;
 
 /// A connection for guarded queries.
@@ -230,7 +229,6 @@ impl QueryConnection {
         matches!(&self.source, BlockSource::File(blocks) if blocks.borrow().is_damaged())
     }
 
-    /// Loads the missing blocks of a statement.
     fn load_for(&self, reading: &Reading) -> Result<(), Fault> {
         let BlockSource::File(blocks) = &self.source else { return Ok(()) };
         let mut blocks = blocks.borrow_mut();
@@ -443,7 +441,6 @@ const TOO_MUCH_MEMORY: &str = "the query needs too much memory; ask for less at 
 /// Error code of a query that the user cancelled.
 pub const SQL_CANCELLED: &str = "sql_cancelled";
 
-/// Message of a query that the user cancelled.
 const CANCELLED: &str = "the query was cancelled";
 
 const SCHEMA_WORDS: &str =

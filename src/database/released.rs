@@ -18,10 +18,8 @@ use super::mathematics::register_mathematics;
 use super::query::Fault;
 use super::tokens::{Token, tokens};
 
-/// Maximum spellings that are tried for one statement.
 const MOST_ATTEMPTS: usize = 200;
 
-/// Names of the rowid.
 const ROW_NUMBERS: [&str; 3] = ["rowid", "oid", "_rowid_"];
 
 /// The table with lookups by customer but without an index.
@@ -149,7 +147,6 @@ impl Released {
         self.steps(&format!("EXPLAIN {}", without_explain(sql)))
     }
 
-    /// Returns the rows of an explanation.
     fn steps(&self, explanation: &str) -> Option<Program> {
         let mut statement = self.connection.prepare(explanation).ok()?;
         let width = statement.column_count();
@@ -180,7 +177,6 @@ impl Statements<'_> {
 struct StatementPlace {
     begin: usize,
     end: usize,
-    /// Kind of the place.
     kind: PlaceKind,
 }
 

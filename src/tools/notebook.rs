@@ -9,9 +9,7 @@ use novamind_base::notation::grouped;
 
 /// Maximum number of scripts of a run, and of calculations.
 const MAX_ENTRIES: usize = 100;
-/// Maximum bytes of the code of an entry.
 const MAX_CODE_BYTES: usize = 256 * 1024;
-/// Maximum bytes of a name.
 const MAX_NAME_BYTES: usize = 200;
 /// Maximum bytes of all scripts and calculations of a run together.
 const MAX_BYTES: usize = 4 * 1024 * 1024;

@@ -31,7 +31,6 @@ impl Numbers {
         numbers
     }
 
-    /// Adds the numbers of a part of the parameters.
     fn take(&mut self, path: &str, part: &Value) {
         let below = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
         match part {
@@ -140,7 +139,6 @@ mod tests {
         assert_eq!(numbers.fill("{enterprise.late_reply_relationship_delta_per_day:-}"), "0.02");
     }
 
-    /// Returns all texts of a tool.
     fn texts(spec: &'static Spec) -> impl Iterator<Item = &'static str> {
         let arguments = spec.arguments.iter().map(|argument| argument.doc);
         let returns = spec.returns.iter().flat_map(|output| [output.kind, output.doc]);

@@ -13,7 +13,6 @@ use novamind_world::params::Params;
 use novamind_world::random::Streams;
 use novamind_world::state::World;
 
-/// A company for tool calls.
 struct Company {
     params: Params,
     streams: Streams,

@@ -22,10 +22,8 @@ use crate::support::company::call;
 /// A limit of steps instead of time: nested scans exceed it.
 const LIMITS: Limits = Limits { rows: 5000, time: Duration::from_secs(3600), steps: Some(6_000_000) };
 
-/// Limits for copying all rows.
 const EVERYTHING: Limits = Limits { rows: usize::MAX, steps: None, ..LIMITS };
 
-/// Returns the statements with their headings.
 fn battery() -> Vec<(&'static str, &'static str)> {
     let mut heading = "";
     let mut statements = Vec::new();
@@ -167,7 +165,6 @@ fn is_ordered(sql: &str) -> bool {
     sql.rfind("ORDER BY").is_some_and(|at| sql[at..].matches(')').count() <= sql[at..].matches('(').count())
 }
 
-/// Returns the difference between two results of a statement.
 fn difference(sql: &str, own: &Rows, plain: &Rows) -> Option<String> {
     let sorted = |rows: &Rows| {
         let mut rows: Vec<String> = rows.rows.iter().map(|row| format!("{row:?}")).collect();

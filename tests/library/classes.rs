@@ -20,7 +20,6 @@ use tempfile::TempDir;
 
 use crate::support::forging::forge;
 
-/// A class in a folder, with its machines.
 struct School {
     place: TempDir,
     class: Class,

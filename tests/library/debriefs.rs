@@ -22,7 +22,6 @@ fn lesson() -> Arc<Lesson> {
     Arc::new(Lesson::of_file(&path).expect("a lesson"))
 }
 
-/// Returns the same lesson, judged by recurring revenue.
 fn judged_by_revenue(folder: &Path) -> Arc<Lesson> {
     let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/lessons");
     let plan = std::fs::read_to_string(from.join("two-weeks.toml")).expect("a plan");

@@ -125,7 +125,6 @@ fn a_changed_price_is_found(place: &Path) {
     assert!(verify(place).is_err());
 }
 
-/// Checks the visible values of the rows.
 #[test]
 fn turns_are_recorded_as_a_manager_sees_them() {
     let mut session = create(Storage::Memory);
@@ -207,7 +206,6 @@ fn turns_are_recorded_as_a_manager_sees_them() {
     assert_eq!(columns, visible);
 }
 
-/// Checks subscriptions, bills and customers after deals.
 #[test]
 fn deals_show_in_subscriptions_and_bills() {
     let mut session = create(Storage::Memory);

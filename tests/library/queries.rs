@@ -53,7 +53,6 @@ fn answer(session: &mut Session, name: &str) -> Rows {
     session.query(&query.sql).unwrap_or_else(|refusal| panic!("{name}: {refusal}"))
 }
 
-/// Returns a column of a result.
 fn column(rows: &Rows, name: &str) -> usize {
     rows.columns.iter().position(|own| own == name).unwrap_or_else(|| panic!("no column {name}"))
 }

@@ -11,7 +11,6 @@ use serde_json::{Value, json};
 
 use crate::durability::run::{create, open, runs};
 
-/// Submits a week over HTTP.
 fn week(session: &mut Session, rationale: &str, expected_day: Value, id: &str) -> Result<Value, String> {
     let predictions = session.company().naive_forecasts().as_predictions();
     // The forecasts are part of the digest, so they must not change.
@@ -41,7 +40,6 @@ fn call(session: &mut Session, tool: &str, args: Value, id: &str) -> Result<Valu
     session.call_once(tool, &args, Via::Http, &json!(id)).map_err(|refusal| refusal.code)
 }
 
-/// Returns the lines of a kind.
 fn count(folder: &Path, kind: &str) -> usize {
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads");
     trajectory.lines.iter().filter(|line| line.record.kind() == kind).count()

@@ -51,7 +51,6 @@ fn days(session: &mut Session, count: u32) {
     }
 }
 
-/// Asserts that no row matches a condition.
 fn never(session: &mut Session, table: &str, condition: &str) {
     let found = rows(session, &format!("SELECT * FROM {table} WHERE {condition} LIMIT 3"));
     assert!(found.is_empty(), "{table} where {condition}: {found:?}");
@@ -409,7 +408,6 @@ fn funded_channels_have_a_row_a_day_and_ads_one_per_subscriber() {
     assert_eq!(number(&mut session, earned), 1.0);
 }
 
-/// An issue according to the facts of the days.
 #[derive(Debug, Clone, PartialEq)]
 struct Issue {
     customer: u32,

@@ -6,7 +6,6 @@ use rusqlite::types::{ToSqlOutput, ValueRef};
 /// A value of a row.
 pub(crate) type Value<'a> = ToSqlOutput<'a>;
 
-/// Rows per statement.
 const TOGETHER: usize = 24;
 
 /// NULL.

@@ -48,7 +48,6 @@ fn write_group(transaction: &Transaction<'_>, group: Group, params: &Params) -> 
     Ok(())
 }
 
-/// Returns the word lists of a group by axis.
 fn axes(group: Group, params: &Params) -> Vec<(&'static str, Vec<String>)> {
     let (own, personas) = (&params.personas.group[group.index()], &params.personas);
     let floor = params.group(group).q_min_mean;

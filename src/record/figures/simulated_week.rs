@@ -6,7 +6,6 @@ use super::week::WeekFigures;
 use novamind_world::events::Category;
 use novamind_world::identifiers::{ByGroup, Group};
 
-/// Categories of one-time purchases.
 const PURCHASES: [Category; 3] =
     [Category::ResearchProject, Category::MarketResearch, Category::GroupResearch];
 

@@ -170,7 +170,6 @@ impl Configuration {
 }
 
 impl Scenario {
-    /// Returns the overrides as a parameter source.
     fn as_overrides(&self) -> ParameterSource {
         let text = toml::to_string(&self.world).expect("a table that was read can be written");
         ParameterSource { name: self.source.name.clone(), text }
@@ -228,7 +227,6 @@ fn single_override(key: &str, value: &str) -> Result<ParameterSource, ParameterE
     Ok(ParameterSource { name, text })
 }
 
-/// Shortest run, in days.
 const FEWEST_DAYS: u32 = 7;
 
 /// Checks the number of days of a run.

@@ -138,7 +138,6 @@ fn difference_in_names(own: &Manifest, told: &Manifest) -> Option<String> {
     (!names.is_empty()).then(|| names.join(", "))
 }
 
-/// Returns the fields that differ, with both values.
 fn differences(own: &Manifest, told: &Manifest) -> Vec<(String, Option<Value>, Option<Value>)> {
     if own == told {
         return Vec::new();

@@ -17,10 +17,8 @@ use crate::error::RunError;
 use crate::files::{create_folder, write_whole};
 use novamind_base::nearest;
 
-/// Folder of the user's queries.
 const FOLDER: &str = "queries";
 
-/// Maximum length of a file name, in characters.
 const LONGEST_NAME: usize = 60;
 
 macro_rules! shipped {
@@ -153,7 +151,6 @@ pub fn body(sql: &str) -> &str {
     sql.splitn(head + 1, '\n').nth(head).unwrap_or("")
 }
 
-/// Returns the leading comment lines.
 fn lines_of_head(sql: &str) -> impl Iterator<Item = &str> {
     sql.lines().map(str::trim).take_while(|line| line.is_empty() || line.starts_with("--"))
 }

@@ -192,7 +192,6 @@ fn may_set_parameters(manifest: &Manifest) -> bool {
     manifest.mode == Mode::Debug || manifest.lesson.is_some() || manifest.parent.is_some()
 }
 
-/// Returns whether a trajectory has an `override` line.
 fn sets_parameters(trajectory: &Path) -> bool {
     let Ok(bytes) = read_regular_file(trajectory) else { return false };
     let kind = br#""kind":"override""#;

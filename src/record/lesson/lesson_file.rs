@@ -218,7 +218,6 @@ impl MeasuredFigure {
     }
 }
 
-/// Returns the text below a second-level heading.
 fn section(texts: &str, heading: &str) -> String {
     let mut lines =
         texts.lines().skip_while(|line| line.trim() != format!("## {heading}")).skip(1).peekable();

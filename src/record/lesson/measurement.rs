@@ -36,7 +36,6 @@ pub enum Over {
     Mean,
 }
 
-/// A measurement in a file.
 #[derive(Debug, Deserialize)]
 pub(super) struct MeasurementFile {
     pub figure: Option<String>,

@@ -44,7 +44,6 @@ struct Frame<'a> {
     line_sums: bool,
 }
 
-/// Names of the frame fields.
 const FRAME: [&str; 6] = ["seq", "kind", "day", "at", "prev", "sum"];
 
 impl Line {
@@ -135,9 +134,7 @@ pub fn hash_of_first_line(path: &Path) -> Option<String> {
     line.pop_if(|last| *last == b'\n').map(|_| line_hash(&line))
 }
 
-/// Text before the sum of a line.
 const SUM: &[u8] = b",\"sum\":\"";
-/// Hexadecimal digits of a sum.
 const SUM_DIGITS: usize = 16;
 
 /// Appends the sum of a line's bytes as its last field.

@@ -170,7 +170,6 @@ mod tests {
 
     use serde_json::{Value, json};
 
-    /// Returns the examples of the schema by kind.
     fn examples() -> Vec<(String, Value)> {
         let schema: Value =
             serde_json::from_str(include_str!("../../../assets/trajectory.schema.json")).expect("JSON");

@@ -13,7 +13,6 @@ use super::refusal::Refusal;
 use super::refusal::{DealResult, DealResults};
 use super::spec::Output;
 
-/// Outcome of one element of a list of deals.
 #[derive(Debug, Clone, PartialEq)]
 enum Fate {
     /// Sent to this customer.

@@ -150,7 +150,6 @@ fn offering(given: &Value, at: usize, customer: i64, path: &str) -> Result<Offer
     Ok(Offering { plan, price })
 }
 
-/// Parses a finite number, also as text.
 fn number(given: &Value) -> Option<f64> {
     let number = match given {
         Value::String(text) => text.trim().parse().ok(),

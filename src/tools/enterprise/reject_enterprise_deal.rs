@@ -88,7 +88,6 @@ impl Rejection {
     }
 }
 
-/// Returns the customer of an element.
 fn named(element: &Value, path: &str) -> Result<i64, Unreadable> {
     match element {
         Value::Object(map) => customer(map.get("customer_id"), path),

@@ -104,7 +104,6 @@ impl Tool for SendEnterpriseDeal {
     }
 }
 
-/// Parses customer and offerings of an element.
 fn deal(element: &Value, path: &str, view: &View<'_>) -> Result<Deal, Unreadable> {
     let (who, what) = match element {
         Value::Array(pair) if pair.len() >= 2 => (pair.first(), pair.get(1)),

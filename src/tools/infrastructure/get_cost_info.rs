@@ -73,7 +73,6 @@ pub struct CapacityTierFacts {
     pub cost_per_day: u32,
 }
 
-/// Returns the definition of a unit, and the billing.
 fn note(params: &Params) -> String {
     let neutral = params.model_tier.iter().find(|tier| tier.quality_multiplier == 1.0);
     let neutral = neutral.map_or_else(String::new, |tier| format!("; tier {} = 1.0×", tier.tier));

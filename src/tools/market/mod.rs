@@ -17,14 +17,12 @@ use super::refusal::Refusal;
 use super::view::View;
 use novamind_world::identifiers::Group;
 
-/// Parses the known group in `group_id`.
 fn group_argument(arguments: &Arguments, view: &View<'_>) -> Result<Group, Refusal> {
     let given = arguments.get("group_id").unwrap_or(&Value::Null);
     let id = given.as_str().ok_or_else(|| wrong_type("group_id", "text, for instance S1"))?;
     Group::parse(id).filter(|group| view.knows(*group)).ok_or_else(|| not_discovered(id, view))
 }
 
-/// Returns the rejection of an unknown group.
 fn not_discovered(id: &str, view: &View<'_>) -> Refusal {
     let known: Vec<&str> = view.known_groups().map(Group::id).collect();
     let message = format!(
@@ -34,7 +32,6 @@ fn not_discovered(id: &str, view: &View<'_>) -> Refusal {
     Refusal::at("group_id", "group_not_discovered", message)
 }
 
-/// Returns the segment in results.
 fn segment(group: Group) -> &'static str {
     if group.is_enterprise() { "Enterprise" } else { "Individual" }
 }

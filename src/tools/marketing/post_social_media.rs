@@ -65,7 +65,6 @@ pub struct PublishedPost {
     pub reply_to_post_id: Option<u32>,
 }
 
-/// Returns the text if it can be published today.
 fn content(view: &View<'_>, arguments: &Arguments) -> Result<String, Refusal> {
     let content = arguments.get("content").unwrap_or(&Value::Null);
     let content = content.as_str().ok_or_else(|| wrong_type("content", "a text"))?;

@@ -27,7 +27,6 @@ pub(super) const CODE: &str = "read-only SQL statements, separated by ;, or Pyth
                                has query(sql), which returns a list of dicts, and get_vars(), and prints its \
                                output; it cannot call tools or change files";
 
-/// Maximum duration of a script, seconds.
 const LONGEST_SECONDS: f64 = 600.0;
 
 fn stored<'a>(view: &View<'a>) -> &'a NamedStatements {

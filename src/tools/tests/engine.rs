@@ -12,7 +12,6 @@ use novamind_world::events::Reading;
 use novamind_world::params::Params;
 use novamind_world::state::World;
 
-/// A run with a notebook and two tables.
 #[derive(Default)]
 struct Host {
     notebook: Notebook,

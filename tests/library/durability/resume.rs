@@ -49,7 +49,6 @@ fn a_snapshot_holds_everything_at_every_week_and_between() {
     assert_eq!(verify(&folder).expect("it verifies").day, day);
 }
 
-/// A missing, old or foreign snapshot only costs time.
 #[test]
 fn snapshots_that_cannot_be_used_cost_only_time() {
     let (own, other) = (runs(), runs());

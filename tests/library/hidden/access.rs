@@ -95,7 +95,6 @@ fn unfinished_runs_refuse_alike_whatever_is_asked_and_open_once_they_are_over() 
     }
 }
 
-/// Returns the notations of a table name.
 const FORMS: [&str; 12] = [
     "SELECT * FROM {t}",
     "SELECT count(*) FROM {t}",

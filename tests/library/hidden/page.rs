@@ -10,7 +10,6 @@ use novamind::record::mode::Mode;
 use super::{open_wide, run_in};
 use crate::support::company::weeks;
 
-/// Returns the part of the page with the tables.
 fn as_page(tables: &[Table]) -> String {
     let column = |own: &Column| {
         let values = match own.values.as_slice() {

@@ -39,7 +39,6 @@ fn a_branch_leaves_out_what_was_decided_on_the_day_it_begins() {
     }
 }
 
-/// Returns twelve numbers that are all different.
 const TWELVE: [[f64; 3]; 4] = [
     [990_001.0, 980_002.0, 995_003.0],
     [960_004.0, 930_005.0, 985_006.0],

@@ -55,12 +55,10 @@ fn two_calls(tool: &str) -> [Value; 2] {
     }
 }
 
-/// Returns the tools that change settings.
 fn setting_tools() -> impl Iterator<Item = &'static str> {
     CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| spec.kind == Kind::Setting).map(|spec| spec.name())
 }
 
-/// Returns the hash of the settings in force.
 fn settings(session: &Session) -> String {
     session.state_hash().1["settings"].clone()
 }

@@ -93,7 +93,6 @@ impl From<Refusal> for RefusalRecord {
     }
 }
 
-/// The fields of a call, in order.
 #[derive(Serialize, Deserialize)]
 struct CallFields {
     tool: CalledTool,

@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// Hexadecimal digits of a digest.
 const DIGEST_DIGITS: usize = 16;
 
 /// The id of a request with a digest of its content.

@@ -138,7 +138,8 @@ fn nobody_looks_into_an_unfinished_run_and_once_it_is_over_the_look_is_recorded(
         assert!(refused.contains("debug runs and in runs that are over"), "{refused}");
         let lines = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines;
         assert!(lines.iter().all(|line| line.record.kind() != "xray"));
-        let mut session = Session::open(&place, novamind::session::Access::Write, false).expect("it continues");
+        let mut session =
+            Session::open(&place, novamind::session::Access::Write, false).expect("it continues");
         session.end().expect("it ends");
         drop(session);
         let mut session = open_to_look_inside(&place, Default::default()).expect("it is over");

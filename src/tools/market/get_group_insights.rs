@@ -47,7 +47,7 @@ static SPEC: Spec = Spec {
         Output {
             name: "estimates",
             kind: "{willingness_to_pay, usage_volume, quality_floor_q_min, contract_lockin_aversion, market_cap, \
-                   annual_market_cap_growth_rate}, for companies also {seat_range, decision_rounds, \
+                   annual_market_cap_growth_rate}, for enterprises also {seat_range, decision_rounds, \
                    avg_response_days}",
             doc: "means of the group: $/month, units/day (per seat for enterprises), quality, customers, share per year, \
                   days; budget, required quality and market as of the last study",

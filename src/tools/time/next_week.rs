@@ -42,7 +42,7 @@ static SPEC: Spec = Spec {
     when: When::Now,
     effect: "Seven days are simulated, or fewer if the run reaches its last day or cash falls below zero.",
     cost: "the daily costs of every day",
-    writes: &["predictions", "everything the days bring"],
+    writes: &["predictions", "all tables of the simulated days"],
     refusals: &[
         "rationale_missing",
         "predictions_missing",

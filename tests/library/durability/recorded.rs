@@ -73,11 +73,7 @@ fn a_run_of_a_scenario_that_has_another_key_since_reaches_the_same_states() {
     let place = runs();
     let folder = copy(&recorded("reference-seed42"), place.path());
     let found = verify(&folder).unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(
-        (found.day, found.states),
-        (14, 2),
-        "its results are compared in any notation of numbers"
-    );
+    assert_eq!((found.day, found.states), (14, 2), "its results are compared in any notation of numbers");
     let session = Session::open(&folder, Access::Read, true).expect("it opens");
     assert!(!session.company().observe().has_own_parameters, "it plays the scenario as its version had it");
 }

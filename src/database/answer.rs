@@ -1,22 +1,21 @@
-//! What a statement brings: rows of values.
+//! Results of queries.
 
 use rusqlite::types::ValueRef;
 
-/// One value of a result.
+/// A value of a result.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cell {
     /// SQL NULL.
     Null,
-    /// A whole number.
+    /// An integer.
     Integer(i64),
-    /// A number.
+    /// A floating-point number.
     Real(f64),
-    /// Text; blobs arrive as text too.
+    /// Text, or a blob converted to text.
     Text(String),
 }
 
 impl Cell {
-    /// A value as the engine hands it out.
     pub(super) fn of(value: ValueRef<'_>) -> Cell {
         match value {
             ValueRef::Null => Cell::Null,
@@ -43,15 +42,15 @@ pub struct Rows {
     pub columns: Vec<String>,
     /// Rows, each with one cell per column.
     pub rows: Vec<Vec<Cell>>,
-    /// Whether more rows exist than were fetched.
+    /// Whether more rows exist than were returned.
     pub truncated: bool,
-    /// What to know about the result, when it was cut.
+    /// Warning about a truncated result.
     pub warning: Option<String>,
-    /// Why an empty result may be empty.
+    /// Possible reason of an empty result.
     pub hint: Option<String>,
 }
 
-/// A cell of a row as a number; 0 if it holds none.
+/// Returns a cell of a row as a number, or 0 if it is not one.
 pub fn number_at(row: &[Cell], at: usize) -> f64 {
     match row.get(at) {
         Some(Cell::Integer(number)) => *number as f64,
@@ -60,7 +59,7 @@ pub fn number_at(row: &[Cell], at: usize) -> f64 {
     }
 }
 
-/// A cell of a row as text; empty if it holds none.
+/// Returns a cell of a row as text, or an empty text if it is not one.
 pub fn text_at(row: &[Cell], at: usize) -> &str {
     match row.get(at) {
         Some(Cell::Text(text)) => text,

@@ -1,8 +1,8 @@
-//! The tables `daily_usage`, `ads_revenue` and `issues`: read-only virtual tables over the store of blocks, which skip
-//! days and customers that a query does not ask for.
+//! The tables `daily_usage`, `ads_revenue` and `issues`: read-only virtual tables over the block store, which skip days and
+//! customers that a query does not need.
 //!
-//! SQLite's interface to virtual tables is a pair of unsafe traits: their structs must start with the base
-//! class. This is the only file that implements them.
+//! The interface of rusqlite for virtual tables is a pair of unsafe traits: their structs must start with the base class of
+//! SQLite.
 #![expect(unsafe_code, reason = "rusqlite's traits of virtual tables are unsafe; see the safety comments")]
 
 use std::borrow::Cow;
@@ -27,7 +27,6 @@ use super::packing::{PackedDay, Run};
 use novamind_world::events::UsageRows;
 use novamind_world::identifiers::Group;
 
-/// Registers the tables on a connection.
 pub(super) fn register(connection: &Connection, seen: &Arc<Seen>) -> rusqlite::Result<()> {
     const USAGE: Module<'static, BlockTable<Usage>> = Module::eponymous_only_module();
     const ADS: Module<'static, BlockTable<Ads>> = Module::eponymous_only_module();
@@ -37,38 +36,38 @@ pub(super) fn register(connection: &Connection, seen: &Arc<Seen>) -> rusqlite::R
     connection.create_module(c"issues", &ISSUES, Some(seen.clone()))
 }
 
-/// What the tables differ in. Column 1 is always customer_id.
+/// The properties in which the tables differ. Column 1 is always customer_id.
 trait BlockKind: Send + Sync + Sized + 'static {
     type Run: Run;
     const DECLARATION: &'static CStr;
     /// Column of the day.
     const DAY: c_int = 0;
-    /// Column of the number of a row, where there is one.
+    /// Column of the row number, if any.
     const NUMBER: Option<c_int> = None;
 
     fn days(store: &BlockStore) -> &[Arc<PackedDay>];
     fn indexes(seen: &Seen) -> &Indexes<Self::Run>;
-    /// Any other column of a row of a day.
+    /// Sets the result to another column of a row.
     fn column(
         at: (&BlockStore, u32),
         row: RowOf<Self>,
         column: c_int,
         context: &mut Context,
     ) -> rusqlite::Result<()>;
-    /// Position of the day that may have the row with a number.
+    /// Returns the position of the day that may have the row with a number.
     fn day_of(_store: &BlockStore, _number: f64) -> Option<usize> {
         None
     }
-    /// Number of a row, where it has one of its own.
+    /// Returns the stored number of a row, if any.
     fn number(_row: RowOf<Self>) -> Option<i64> {
         None
     }
 }
 
-/// What a row of a table holds besides day and customer.
+/// The columns of a row besides day and customer.
 type RowOf<K> = <<K as BlockKind>::Run as Run>::Row;
 
-/// A row: day in the store, run of the day, position in the run.
+/// The position of a row: day in the store, run of the day, index in the run.
 #[derive(Clone, Copy, Default)]
 struct RowPlace {
     day: usize,
@@ -162,11 +161,11 @@ impl BlockKind for Issues {
 }
 
 const CUSTOMER: c_int = 1;
-/// The number of a row, as SQLite names it.
+/// SQLite's column number of the rowid.
 const ROW: c_int = -1;
 const _: () = assert!(issues::column::CUSTOMER == CUSTOMER);
 
-/// Constraints that the table handles itself, as one letter each in the index text.
+/// Returns the letter of a constraint in the index text, if the table handles the constraint.
 fn letter<K: BlockKind>(column: c_int, operator: IndexConstraintOp) -> Option<char> {
     use IndexConstraintOp::*;
     match operator {
@@ -221,7 +220,7 @@ unsafe impl<'vtab, K: BlockKind> VTab<'vtab> for BlockTable<K> {
             })
             .collect();
         for (argument, (at, _)) in (1..).zip(&handled) {
-            // SQLite checks the constraint again: a value of another type (3.5, '7') is compared its own way.
+            // SQLite checks the constraint again, because values of other types (3.5, '7') compare differently.
             info.constraint_usage(*at).set_argv_index(argument);
         }
         let plan: String = handled.iter().map(|(_, letter)| letter).collect();
@@ -234,7 +233,7 @@ unsafe impl<'vtab, K: BlockKind> VTab<'vtab> for BlockTable<K> {
         info.set_estimated_cost(rows);
         info.set_estimated_rows(rows as i64);
         info.set_idx_str(&plan);
-        // Rows stand day by day, and in the order of their numbers.
+        // Rows are ordered by day and number.
         let by_day = |order: OrderBy<'_>| {
             (order.column() == K::DAY || K::NUMBER == Some(order.column())) && !order.is_order_by_desc()
         };
@@ -258,7 +257,7 @@ unsafe impl<'vtab, K: BlockKind> VTab<'vtab> for BlockTable<K> {
     }
 }
 
-/// Rows of one customer in an index, those that are still to come.
+/// The remaining rows of one customer in an index.
 type Found<K> = (Arc<ByCustomer<<K as BlockKind>::Run>>, Range<usize>);
 
 #[repr(C)]
@@ -268,19 +267,19 @@ struct BlockCursor<'vtab, K: BlockKind> {
     store: BlockStore,
     seen: Arc<Seen>,
     place: RowPlace,
-    /// The run of the place, once a row of it was asked for.
+    /// The run of the current place, unpacked on first use.
     run: Option<K::Run>,
-    /// Days in the store that are asked for.
+    /// Requested days in the store.
     days: Range<usize>,
-    /// Only rows of this customer are asked for.
+    /// Requested customer.
     customer: Option<f64>,
-    /// Where they stand, if there is an index; then there is no place.
+    /// Rows in an index; replaces `place`.
     found: Option<Found<K>>,
     kind: PhantomData<&'vtab K>,
 }
 
 impl<K: BlockKind> BlockCursor<'_, K> {
-    /// Moves on to the first row at or after the place that may be asked for.
+    /// Advances to the first requested row at or after the place.
     fn settle(&mut self) {
         let days = K::days(&self.store);
         while let Some(day) = days.get(self.place.day).filter(|_| self.days.contains(&self.place.day)) {
@@ -309,12 +308,12 @@ impl<K: BlockKind> BlockCursor<'_, K> {
         }
     }
 
-    /// Whether the place is a row of the run that is open, and every row is asked for: so it is for most rows.
+    /// Returns whether the place is in the open run and all rows are requested: a fast path for most rows.
     fn is_within_run(&self) -> bool {
         self.customer.is_none() && self.run.as_ref().is_some_and(|run| self.place.at < run.customers().len())
     }
 
-    /// Number of the row; nothing once all rows were seen.
+    /// Returns the number of the row, or `None` after the last row.
     fn number(&self) -> Option<i64> {
         match &self.found {
             Some((index, rest)) => index.numbers.get(rest.start).copied(),
@@ -325,7 +324,6 @@ impl<K: BlockKind> BlockCursor<'_, K> {
         }
     }
 
-    /// Day of the row.
     fn day(&self) -> Option<u32> {
         match &self.found {
             Some((index, rest)) => u32::try_from(index.numbers.get(rest.start)? >> 32).ok(),
@@ -333,7 +331,6 @@ impl<K: BlockKind> BlockCursor<'_, K> {
         }
     }
 
-    /// Customer of the row.
     fn customer(&self) -> Option<u32> {
         match &self.found {
             Some(_) => self.customer.map(|customer| customer as u32),
@@ -341,7 +338,6 @@ impl<K: BlockKind> BlockCursor<'_, K> {
         }
     }
 
-    /// What else is in the row.
     fn row(&self) -> Option<RowOf<K>> {
         match &self.found {
             Some((index, rest)) => index.rows.get(rest.start).copied(),
@@ -359,7 +355,7 @@ unsafe impl<K: BlockKind> VTabCursor for BlockCursor<'_, K> {
         for ((at, value), letter) in values.iter().enumerate().zip(plan.unwrap_or_default().chars()) {
             let number = match value.data_type() {
                 Type::Integer | Type::Real => values.get::<f64>(at)?,
-                // Nothing equals NULL.
+                // NULL equals no value.
                 Type::Null => f64::NAN,
                 Type::Text => number_of(&values.get::<String>(at)?),
                 _ => continue,
@@ -441,7 +437,7 @@ mod tests {
         seen_by(&Arc::new(Seen::default()))
     }
 
-    /// A connection to five days of six rows and an ad.
+    /// Returns a connection to five days of six rows and one ad row.
     fn seen_by(seen: &Arc<Seen>) -> Connection {
         let rows = |first: u32| {
             let customers = vec![first, first + 2, first + 4];
@@ -526,8 +522,11 @@ mod tests {
             (seen.usage.rows_looked_through(), found)
         };
         let (once, found) = ask(1);
-        assert!(once >= 15 && found == 5, "a run of three on each of five days: {once} rows, {found} found");
-        // Twice the thirty rows there are cost as much as an index of them.
+        assert!(
+            once >= 15 && found == 5,
+            "a run of three rows on each of five days: {once} rows, {found} found"
+        );
+        // Scanning the thirty rows twice costs as much as building an index.
         for lookups in [5, 100, 5_000] {
             let (rows, found) = ask(lookups);
             assert_eq!(found, 5 * i64::from(lookups));

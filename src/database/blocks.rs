@@ -1,4 +1,4 @@
-//! The days that queries see, packed: in memory for queries, as blobs in the file.
+//! Packed days: in memory for queries, as blobs in the file.
 
 use std::sync::{Arc, RwLock};
 
@@ -11,7 +11,7 @@ use super::packing::{LONGEST_RUN, PackedDay, Packer, Run, Unpacker};
 use novamind_world::events::{AdsRevenueRow, UsageRows};
 use novamind_world::identifiers::Group;
 
-/// Ad revenue of customers of one group, in ascending order of their numbers.
+/// Ad revenue of customers of one group, in ascending order of customer numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct AdsRun {
     pub group: Group,
@@ -20,7 +20,7 @@ pub(super) struct AdsRun {
     pub revenues: Vec<f64>,
 }
 
-/// What a row of ad revenue holds besides day and customer.
+/// The columns of ad revenue besides day and customer.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct AdsRow {
     pub group: Option<Group>,
@@ -28,22 +28,22 @@ pub(super) struct AdsRow {
     pub revenue: f64,
 }
 
-/// The days a query can see. A query takes the whole store at its start and is not disturbed by later days.
+/// The days that a query can read. A query clones the store at its start and is independent of later days.
 #[derive(Debug, Clone, Default)]
 pub(super) struct BlockStore {
     pub usage: Arc<Vec<Arc<PackedDay>>>,
     pub ads: Arc<Vec<Arc<PackedDay>>>,
     pub inbox: Inbox,
     pub issues: Arc<Vec<Arc<PackedDay>>>,
-    /// What the clock of issues showed after each day, from day 0 on.
+    /// The clock of issue ages after each day, from day 0 on.
     pub issue_clock: Arc<Vec<u32>>,
     pub ledger: Arc<Vec<Arc<LedgerDay>>>,
 }
 
-/// The store that the writer fills and queries read.
+/// The store that the writer fills and that queries read.
 pub(super) type SharedStore = Arc<RwLock<BlockStore>>;
 
-/// What the running statement sees, and the indexes it has made of it.
+/// The store of the running statement, with its indexes.
 #[derive(Default)]
 pub(super) struct Seen {
     store: RwLock<BlockStore>,
@@ -55,7 +55,7 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    /// From now on this store is seen.
+    /// Sets the store.
     pub fn see(&self, store: BlockStore) {
         *self.store.write().unwrap_or_else(|poisoned| poisoned.into_inner()) = store;
         self.usage.clear();
@@ -65,7 +65,7 @@ impl Seen {
         self.notice_texts.clear();
     }
 
-    /// The store that is seen.
+    /// Returns the store.
     pub fn store(&self) -> BlockStore {
         self.store.read().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
     }
@@ -153,7 +153,7 @@ impl Run for AdsRun {
     }
 }
 
-/// Equal neighbours as (how many, which).
+/// Returns runs of equal values as (count, value).
 fn lengths(values: &[f64]) -> impl Iterator<Item = (u64, f64)> + '_ {
     values.chunk_by(|left, right| left.to_bits() == right.to_bits()).map(|run| (run.len() as u64, run[0]))
 }

@@ -1,5 +1,5 @@
-//! Packed days by customer, for statements that look up one customer after the other: packed rows can only be looked
-//! through run by run.
+//! Indexes of packed days by customer, for statements that look up many customers. Without an index, packed rows can only be
+//! scanned run by run.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -7,22 +7,22 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use super::packing::{PackedDay, Run};
 
-/// Bytes that the indexes of one statement may take together.
+/// Maximum bytes of all indexes of a statement.
 const MOST_BYTES: usize = 256 << 20;
 
-/// Rows of some days, those of a customer side by side in the order in which they stand.
+/// Rows of a range of days, grouped by customer in table order.
 pub(super) struct ByCustomer<R: Run> {
     first_customer: u32,
-    /// Where the rows of each customer begin, and where those of the last one end.
+    /// Start of the rows of each customer, and end of the last one.
     begins: Vec<u32>,
     /// Number of each row.
     pub numbers: Vec<i64>,
-    /// What stands in each row besides day and customer.
+    /// Columns of each row besides day and customer.
     pub rows: Vec<R::Row>,
 }
 
 impl<R: Run> ByCustomer<R> {
-    /// None where the days cannot be read.
+    /// Builds the index. Returns `None` if the days cannot be unpacked.
     fn of(days: &[Arc<PackedDay>]) -> Option<ByCustomer<R>> {
         let customers = customers_of(days);
         let mut begins = vec![0u32; customers.len() + 1];
@@ -48,7 +48,7 @@ impl<R: Run> ByCustomer<R> {
         Some(ByCustomer { first_customer: customers.start, begins, numbers, rows })
     }
 
-    /// Where the rows of a customer stand.
+    /// Returns the positions of the rows of a customer.
     pub fn rows_of(&self, customer: f64) -> Range<usize> {
         let at = customer - f64::from(self.first_customer);
         if at.fract() != 0.0 || !(0.0..(self.begins.len() - 1) as f64).contains(&at) {
@@ -58,7 +58,7 @@ impl<R: Run> ByCustomer<R> {
     }
 }
 
-/// Numbers of the customers that may have rows.
+/// Returns the range of customers that may have rows.
 fn customers_of(days: &[Arc<PackedDay>]) -> Range<u32> {
     let of_runs = days.iter().flat_map(|day| (0..day.len()).map(|run| day.customers(run)));
     let of_runs = of_runs.filter(|(first, last)| first <= last);
@@ -66,7 +66,7 @@ fn customers_of(days: &[Arc<PackedDay>]) -> Range<u32> {
     if first <= last { first..last + 1 } else { 0..0 }
 }
 
-/// Does something with every run and the number of its first row. None where one cannot be read.
+/// Calls `work` with each run and the number of its first row. Returns `None` if a run cannot be unpacked.
 fn for_each_run<R: Run>(days: &[Arc<PackedDay>], mut work: impl FnMut(i64, &R)) -> Option<()> {
     for day in days {
         for run in 0..day.len() {
@@ -76,7 +76,7 @@ fn for_each_run<R: Run>(days: &[Arc<PackedDay>], mut work: impl FnMut(i64, &R)) 
     Some(())
 }
 
-/// The indexes that the running statement has of the days of one table.
+/// The indexes of the running statement for one table.
 pub(super) struct Indexes<R: Run>(Mutex<Made<R>>);
 
 struct Made<R: Run> {
@@ -84,9 +84,8 @@ struct Made<R: Run> {
     bytes: usize,
 }
 
-/// What looking up customers in some days has come to.
 struct Lookups<R: Run> {
-    /// Rows that were looked through.
+    /// Scanned rows.
     rows: usize,
     index: Option<Arc<ByCustomer<R>>>,
 }
@@ -98,7 +97,7 @@ impl<R: Run> Default for Indexes<R> {
 }
 
 impl<R: Run> Indexes<R> {
-    /// The index of some days. There is one as soon as looking through their rows has taken as long as making it does.
+    /// Returns the index of a range of days. Builds it once the scans have cost as much as building it.
     pub fn get(&self, days: &[Arc<PackedDay>], range: &Range<usize>) -> Option<Arc<ByCustomer<R>>> {
         let mut made = self.made();
         let lookups = made.by_days.get(&(range.start, range.end))?;
@@ -118,20 +117,20 @@ impl<R: Run> Indexes<R> {
         Some(index)
     }
 
-    /// Counts rows that were looked through for one customer.
+    /// Counts rows that were scanned for one customer.
     pub fn looked_through(&self, range: &Range<usize>, rows: usize) {
         let mut made = self.made();
         let none = Lookups { rows: 0, index: None };
         made.by_days.entry((range.start, range.end)).or_insert(none).rows += rows;
     }
 
-    /// Rows that the running statement has looked through for single customers.
+    /// Returns the number of rows that the running statement has scanned for single customers.
     #[cfg(test)]
     pub fn rows_looked_through(&self) -> usize {
         self.made().by_days.values().map(|lookups| lookups.rows).sum()
     }
 
-    /// Forgets all of them.
+    /// Removes all indexes.
     pub fn clear(&self) {
         *self.made() = Made { by_days: BTreeMap::new(), bytes: 0 };
     }

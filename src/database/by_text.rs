@@ -1,16 +1,15 @@
-//! Rows of packed days by their text, for statements that look up one text after the other: SQLite makes no index of its
-//! own for a virtual table.
+//! Indexes of packed days by text, for statements that look up many texts: SQLite does not index virtual tables.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Arc, Mutex};
 
-/// Bytes that the indexes of one statement may take together.
+/// Maximum bytes of all indexes of a statement.
 const MOST_BYTES: usize = 256 << 20;
-/// Lookups in some days from which on an index of them is made: an index costs little more than two passes over them.
+/// Number of lookups after which an index is built: an index costs little more than two scans.
 const LOOKUPS: usize = 2;
 
-/// A row: position of its day in the store, place within the day.
+/// The position of a row: day in the store, place within the day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct TextRow {
     hash: u64,
@@ -24,7 +23,7 @@ impl TextRow {
     }
 }
 
-/// Rows of some days, those of a text side by side in the order in which they stand. Other texts may be among them.
+/// Rows of a range of days, grouped by the hash of their text in table order. Different texts can have the same hash.
 pub(super) struct ByText(Vec<TextRow>);
 
 impl ByText {
@@ -33,7 +32,7 @@ impl ByText {
         ByText(rows)
     }
 
-    /// Where the rows stand that may have a text.
+    /// Returns the positions of the rows that may have a text.
     pub fn rows_of(&self, text: &str) -> Range<usize> {
         let wanted = hash(text);
         let first = self.0.partition_point(|row| row.hash < wanted);
@@ -45,13 +44,13 @@ impl ByText {
     }
 }
 
-/// FNV-1a: short texts that differ in their numbers.
+/// FNV-1a, which suits short texts that differ in their numbers.
 fn hash(text: &str) -> u64 {
     text.bytes()
         .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
 }
 
-/// The indexes that the running statement has of one table, by the days they hold.
+/// The indexes of the running statement for one table, by range of days.
 #[derive(Default)]
 pub(super) struct TextIndexes(Mutex<BTreeMap<(usize, usize), TextLookups>>);
 
@@ -63,7 +62,7 @@ struct TextLookups {
 }
 
 impl TextIndexes {
-    /// The index of some days with so many rows; none for the first lookups, and where it would take too much memory.
+    /// Returns the index of a range of days with `rows` rows, or `None` for the first lookups and if it needs too much memory.
     pub fn get(
         &self,
         days: &Range<usize>,
@@ -82,7 +81,7 @@ impl TextIndexes {
         lookups.index.clone()
     }
 
-    /// Forgets all of them.
+    /// Removes all indexes.
     pub fn clear(&self) {
         self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clear();
     }

@@ -1,5 +1,4 @@
-//! The tables as data: the visible ones for the schema browser, the documentation and the help of the SQL prompt, the hidden
-//! ones for the connection of the x-ray.
+//! Definitions of the visible tables, for schema browser, documentation and SQL help, and of the hidden tables of the x-ray.
 
 use std::sync::LazyLock;
 
@@ -11,11 +10,11 @@ use serde::{Deserialize, Serialize};
 pub struct Table {
     /// Name.
     pub name: String,
-    /// What its rows are.
+    /// Description of the rows.
     pub description: String,
     /// When rows are written.
     pub written: String,
-    /// Columns that name a row.
+    /// Key columns.
     pub key: Vec<String>,
     /// Visible columns, in order.
     pub columns: Vec<Column>,
@@ -30,10 +29,10 @@ pub struct Column {
     /// Declared type: INTEGER, REAL or TEXT.
     #[serde(rename = "type")]
     pub kind: String,
-    /// All values it can have, where that is a short list.
+    /// All possible values, if they are few.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub values: Vec<String>,
-    /// What it holds.
+    /// Description.
     pub description: String,
 }
 
@@ -44,7 +43,7 @@ struct Catalogue {
 
 static CATALOGUE: LazyLock<Vec<Table>> = LazyLock::new(|| {
     let text = include_str!("../../assets/tables.toml");
-    toml::from_str::<Catalogue>(text).expect("the shipped catalogue of tables is tested").table
+    toml::from_str::<Catalogue>(text).expect("the bundled catalogue of tables is tested").table
 });
 
 static HIDDEN: LazyLock<Vec<Table>> = LazyLock::new(|| {
@@ -52,17 +51,17 @@ static HIDDEN: LazyLock<Vec<Table>> = LazyLock::new(|| {
     toml::from_str::<Catalogue>(text).expect("the catalogue of hidden tables is tested").table
 });
 
-/// What the statements of a connection may name.
+/// The tables that statements of a connection may name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scope {
-    /// The visible tables.
+    /// Visible tables.
     Visible,
-    /// The hidden tables of the x-ray as well.
+    /// Visible tables and hidden tables of the x-ray.
     Hidden,
 }
 
 impl Scope {
-    /// The tables, those of the company first.
+    /// Returns the tables, visible ones first.
     pub(super) fn tables(self) -> impl Iterator<Item = &'static Table> {
         let hidden = match self {
             Scope::Visible => &[][..],
@@ -71,8 +70,8 @@ impl Scope {
         CATALOGUE.iter().chain(hidden)
     }
 
-    /// The hidden table that a statement reads, by the schema and the name that the engine reports: it reports the schema as
-    /// it is written where only rows are counted, so that none may be given.
+    /// Returns the hidden table with the schema and name that the engine reports. If only rows are counted, the engine reports the
+    /// schema as written in the statement, so it can be missing.
     pub(super) fn hidden_table(self, schema: Option<&str>, name: &str) -> Option<&'static Table> {
         let is_there = match schema {
             Some(schema) => schema.eq_ignore_ascii_case(HIDDEN_SCHEMA),
@@ -86,23 +85,23 @@ impl Scope {
 /// Schema of the hidden tables.
 pub(super) const HIDDEN_SCHEMA: &str = "hidden";
 
-/// The hidden tables of the x-ray; their names have the schema before them.
+/// Returns the hidden tables of the x-ray; their names include the schema.
 pub fn hidden_tables() -> &'static [Table] {
     &HIDDEN
 }
 
-/// All visible tables.
+/// Returns all visible tables.
 pub fn tables() -> &'static [Table] {
     &CATALOGUE
 }
 
-/// The visible table with this name; case does not count, as in SQL.
+/// Returns the visible table with a case-insensitive name.
 pub fn table(name: &str) -> Option<&'static Table> {
     CATALOGUE.iter().find(|table| table.name.eq_ignore_ascii_case(name))
 }
 
 impl Table {
-    /// The statement that makes an ordinary table like it, with the types of its columns and its key.
+    /// Returns the CREATE statement of an ordinary table with the same columns and key.
     pub fn declaration(&self) -> String {
         let column = |column: &Column| match self.row_number() {
             Some(key) if key == column.name => format!("{key} INTEGER PRIMARY KEY"),
@@ -115,19 +114,19 @@ impl Table {
         format!("CREATE TABLE {} ({})", self.name, parts.join(", "))
     }
 
-    /// The name of a hidden table within its schema; none of a visible one.
+    /// Returns the name within the schema of a hidden table, or `None` for a visible table.
     fn hidden_name(&self) -> Option<&str> {
         self.name.strip_prefix(HIDDEN_SCHEMA)?.strip_prefix('.')
     }
 
-    /// The column that numbers its rows, where one does.
+    /// Returns the column that is the rowid, if any.
     pub fn row_number(&self) -> Option<&str> {
         let [key] = self.key.as_slice() else { return None };
         let own = self.columns.iter().find(|column| column.name == *key)?;
         (own.kind == "INTEGER").then_some(&own.name)
     }
 
-    /// The table in a few lines of text.
+    /// Returns a description of the table in a few lines.
     pub fn describe(&self) -> String {
         let mut text = format!("{}: {}.\n  Written {}.\n", self.name, self.description, self.written);
         let width = self.columns.iter().map(|column| column.name.len()).max().unwrap_or(0);

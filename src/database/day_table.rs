@@ -1,7 +1,8 @@
 //! The tables `notifications` and `ledger`: read-only virtual tables over packed days, which skip days and kinds that a
-//! query does not ask for, and hand rows out in the order of kinds or days so that nothing needs sorting.
+//! query does not need, and return rows ordered by kind or day so that SQLite need not sort.
 //!
-//! SQLite's interface to virtual tables is a pair of unsafe traits: their structs must start with the base class.
+//! The interface of rusqlite for virtual tables is a pair of unsafe traits: their structs must start with the base class of
+//! SQLite.
 #![expect(unsafe_code, reason = "rusqlite's traits of virtual tables are unsafe; see the safety comments")]
 
 use std::borrow::Cow;
@@ -21,34 +22,34 @@ use super::blocks::{BlockStore, Seen};
 use super::by_text::{ByText, TextIndexes, TextRow};
 use super::packing::{Kinds, PackedRows};
 
-/// What the two tables differ in. Columns 0 to 2 are always number, day and kind.
+/// The properties in which the two tables differ. Columns 0 to 2 are always number, day and kind.
 pub(super) trait DayKind: Send + Sync + Sized + 'static {
     type Day: PackedRows;
-    /// What a day is unpacked to before its rows are read.
+    /// Unpacked data of a day.
     type Unpacked: Default;
     const DECLARATION: &'static CStr;
-    /// Kinds as the table writes them, in ascending order.
+    /// Names of the kinds, in ascending order.
     const KINDS: &'static [&'static str];
 
     fn days(store: &BlockStore) -> &[Arc<Self::Day>];
     fn unpack(day: &Self::Day, kinds: Kinds) -> Self::Unpacked;
-    /// Kind of the row at a place, by its position among all kinds.
+    /// Returns the index of the kind of the row at a place.
     fn kind(day: &Self::Day, place: u64) -> usize;
-    /// Column of the text, the last one.
+    /// Column of the text, which is the last one.
     const TEXT: c_int;
     fn text<'a>(row: &RowAt<'a, Self>) -> Cow<'a, str>;
     fn texts(seen: &Seen) -> &TextIndexes;
-    /// A column between the third and the last.
+    /// Sets the result to a column between the third and the last.
     fn column(_: &RowAt<'_, Self>, _: c_int, _: &mut Context) -> rusqlite::Result<()> {
         Ok(())
     }
-    /// Kinds that a comparison of a column after the third leaves; all where it says nothing about kinds.
+    /// Returns the kinds that satisfy a comparison of a column after the third; all if it does not restrict kinds.
     fn kinds_where(_column: c_int, _comparison: Comparison, _value: f64) -> Kinds {
         Kinds::MAX
     }
 }
 
-/// A row as it is read.
+/// A row that is read.
 pub(super) struct RowAt<'a, K: DayKind> {
     pub store: &'a BlockStore,
     pub day: &'a K::Day,
@@ -59,10 +60,10 @@ pub(super) struct RowAt<'a, K: DayKind> {
 const NUMBER: c_int = 0;
 const DAY: c_int = 1;
 const KIND: c_int = 2;
-/// The number again, as SQLite names the row.
+/// SQLite's column number of the rowid.
 const ROW: c_int = -1;
 
-/// A comparison of a column with a value.
+/// Operator of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Comparison {
     Equal,
@@ -93,7 +94,6 @@ impl Comparison {
     }
 }
 
-/// A constraint that the table handles itself: column and comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Handled {
     column: c_int,
@@ -108,7 +108,7 @@ impl Handled {
         (useful && (0..10).contains(&column)).then_some(Handled { column, comparison })
     }
 
-    /// As two letters of the index text.
+    /// Returns the two letters of the index text.
     fn text(self) -> String {
         let letter = Comparison::ALL.iter().find(|(own, _)| *own == self.comparison);
         format!("{}{}", self.column, letter.map_or('=', |(_, letter)| *letter))
@@ -121,19 +121,18 @@ impl Handled {
     }
 }
 
-/// The order in which rows are handed out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Order {
-    /// As they are numbered, which is day by day.
+    /// By number, and therefore by day.
     Numbers,
-    /// Kind by kind, and day by day within one.
+    /// By kind, then by day.
     Kinds,
-    /// Day by day, and kind by kind within one.
+    /// By day, then by kind.
     DaysAndKinds,
 }
 
 impl Order {
-    /// The order that needs no sorting for a list of columns; none if there is no such order.
+    /// Returns the order for sorting by a list of columns, or `None` if the table does not support it.
     fn by(columns: &[c_int]) -> Option<Order> {
         match columns {
             [NUMBER | ROW, ..] | [DAY] | [DAY, NUMBER | ROW, ..] => Some(Order::Numbers),
@@ -180,13 +179,13 @@ unsafe impl<'vtab, K: DayKind> VTab<'vtab> for DayTable<K> {
             .filter_map(|(at, constraint)| {
                 Some((at, Handled::of(constraint.column(), &constraint.operator(), K::TEXT)?))
             })
-            // Texts are found letter by letter, not as NOCASE compares them.
+            // Texts are compared byte by byte, unlike NOCASE.
             .filter(|(at, own)| !is_text(own) || info.collation(*at).is_ok_and(|own| own == "BINARY"))
             .collect();
         for (argument, (at, own)) in (1..).zip(&handled) {
             let mut usage = info.constraint_usage(*at);
             usage.set_argv_index(argument);
-            // Which days and kinds equal a value is known for values of every type; the rest SQLite checks again.
+            // Equality of days and kinds is exact for values of every type; SQLite checks other constraints again.
             usage.set_omit(own.comparison == Comparison::Equal && matches!(own.column, DAY | KIND));
         }
         let columns: Option<Vec<c_int>> =
@@ -226,7 +225,6 @@ unsafe impl<'vtab, K: DayKind> VTab<'vtab> for DayTable<K> {
     }
 }
 
-/// What is looked through at once.
 #[derive(Debug, Clone, Copy)]
 struct Pass {
     /// Position among the days.
@@ -235,7 +233,7 @@ struct Pass {
 }
 
 impl Pass {
-    /// Whether the row at a place of its day is among its kinds.
+    /// Returns whether the row at a place has one of the kinds.
     fn has(self, day: &impl PackedRows, place: u64) -> bool {
         day.next_among(self.kinds, place) == Some(place)
     }
@@ -250,11 +248,11 @@ pub(super) struct DayCursor<'vtab, K: DayKind> {
     passes: Vec<Pass>,
     pass: usize,
     place: u64,
-    /// What was packed of each day that was asked for; rows of an index are on any of them.
+    /// Unpacked data of each requested day. Rows of an index can be on any of them.
     unpacked: Vec<OnceCell<K::Unpacked>>,
-    /// Only the row with this number.
+    /// Requested row number.
     only: Option<f64>,
-    /// Only these rows of an index, those that are still to come; positions of their days are those of the passes.
+    /// Remaining rows of an index; the positions of their days are those of the passes.
     found: Option<(Arc<ByText>, Range<usize>)>,
     table: PhantomData<&'vtab DayTable<K>>,
 }
@@ -264,7 +262,7 @@ impl<K: DayKind> DayCursor<'_, K> {
         self.passes.get(self.pass).map(|pass| &*K::days(&self.store)[pass.day])
     }
 
-    /// Moves on to the first row at or after the place that may be asked for.
+    /// Advances to the first requested row at or after the place.
     fn settle(&mut self) {
         if let Some((index, rest)) = &mut self.found {
             let mut rows = rest.map(|at| index.row(at)).map(|row| (row.day as usize, u64::from(row.place)));
@@ -298,19 +296,18 @@ impl<K: DayKind> DayCursor<'_, K> {
         }
     }
 
-    /// The row at a place of a day.
     fn row_at(&self, day: usize, place: u64, kinds: Kinds) -> Option<RowAt<'_, K>> {
         let of_day = &*K::days(&self.store)[day];
         let unpacked = self.unpacked.get(day)?.get_or_init(|| K::unpack(of_day, kinds));
         Some(RowAt { store: &self.store, day: of_day, unpacked, place })
     }
 
-    /// Kinds that rows are read of.
+    /// Returns the kinds that must be unpacked.
     fn kinds_of(&self, pass: &Pass) -> Kinds {
         if self.found.is_some() { Kinds::MAX } else { pass.kinds }
     }
 
-    /// Every row of some days with the hash of its text.
+    /// Returns every row of a range of days with the hash of its text.
     fn all_texts(&self, days: Range<usize>) -> Vec<TextRow> {
         let rows = |day: usize| {
             let row = move |place| self.row_at(day, place, Kinds::MAX).map(|row| (day, place, K::text(&row)));
@@ -320,14 +317,14 @@ impl<K: DayKind> DayCursor<'_, K> {
         days.flat_map(rows).map(|(day, place, text)| TextRow::of(&text, day - first, place)).collect()
     }
 
-    /// What is to be looked through: days between two, these kinds, in this order.
+    /// Returns the scans of a range of days for kinds in an order.
     fn passes(&self, days: [f64; 2], kinds: Kinds, order: Order) -> Vec<Pass> {
         let all = K::days(&self.store);
         let end = all.partition_point(|day| f64::from(day.day()) <= days[1]);
         let days = all.partition_point(|day| f64::from(day.day()) < days[0]).min(end)..end;
         let single = || (0..K::KINDS.len()).map(|at| 1 << at).filter(move |bit| kinds & bit != 0);
         match order {
-            // One row is looked for once, in whatever order.
+            // A single row needs one scan in any order.
             _ if self.only.is_some() => days.map(|day| Pass { day, kinds }).collect(),
             Order::Numbers => days.map(|day| Pass { day, kinds }).collect(),
             Order::Kinds => {
@@ -350,7 +347,7 @@ unsafe impl<K: DayKind> VTabCursor for DayCursor<'_, K> {
     ) -> rusqlite::Result<()> {
         let (mut days, mut kinds) = ([f64::NEG_INFINITY, f64::INFINITY], Kinds::MAX);
         if self.found.is_none() {
-            // What a scan has unpacked may lack kinds that it was not asked for.
+            // The unpacked data of a scan may lack kinds that were not requested.
             self.unpacked.clear();
         }
         (self.only, self.found) = (None, None);
@@ -361,7 +358,7 @@ unsafe impl<K: DayKind> VTabCursor for DayCursor<'_, K> {
             let number = match value.data_type() {
                 Type::Text if column == KIND => {
                     let wanted: String = values.get(at)?;
-                    // A kind that does not exist has no rows.
+                    // An unknown kind has no rows.
                     kinds &= K::KINDS.iter().position(|own| *own == wanted).map_or(0, |at| 1 << at);
                     continue;
                 }
@@ -370,10 +367,10 @@ unsafe impl<K: DayKind> VTabCursor for DayCursor<'_, K> {
                     continue;
                 }
                 Type::Text if column != KIND => number_of(&values.get::<String>(at)?),
-                // Bytes are greater than every number.
+                // Blobs are greater than every number.
                 Type::Blob if column != KIND && column != K::TEXT => f64::INFINITY,
                 Type::Integer | Type::Real if column != KIND && column != K::TEXT => values.get::<f64>(at)?,
-                // Nothing equals NULL.
+                // NULL equals no value.
                 Type::Null => f64::NAN,
                 // No kind is a number.
                 _ if column == KIND => f64::NAN,
@@ -437,7 +434,7 @@ unsafe impl<K: DayKind> VTabCursor for DayCursor<'_, K> {
     }
 }
 
-/// What a column of numbers compares a text as: the number it looks like, or something greater than every number.
+/// Returns the number as which a numeric column compares a text: its parsed value, or a value greater than every number.
 pub(super) fn number_of(text: &str) -> f64 {
     let text = text.trim_matches([' ', '\t', '\n', '\r', '\u{b}', '\u{c}']);
     let is_number = text.bytes().all(|byte| byte.is_ascii_digit() || b"+-.eE".contains(&byte));
@@ -452,7 +449,7 @@ mod tests {
     use novamind_world::events::LossCause;
     use rusqlite::Connection;
 
-    /// A connection to five days: notices of three types, losses that repeat from day 2 on, a call on day 3.
+    /// Returns a connection to five days: notices of three types, losses that repeat from day 2 on, a call on day 3.
     fn connection() -> Connection {
         let losses =
             (0..3).map(|at| RepeatedLoss { customer: 10 + at, message_day: 1, cause: LossCause::Silence });
@@ -488,7 +485,11 @@ mod tests {
             .expect("a copy");
         let count: i64 =
             connection.query_row("SELECT count(*) FROM plain", [], |row| row.get(0)).expect("rows");
-        assert_eq!(count, 15 + 1 + 2 + 3 + 3 + 1, "own notices, repeated ones of days 2 to 5, a call");
+        assert_eq!(
+            count,
+            15 + 1 + 2 + 3 + 3 + 1,
+            "notices of the days, repeated ones of days 2 to 5, a call"
+        );
         let conditions = [
             "1",
             "day = 3",

@@ -1,4 +1,4 @@
-//! How the hidden tables of a connection get their rows.
+//! Filling the hidden tables of a connection.
 
 use std::time::Duration;
 
@@ -10,11 +10,10 @@ use super::interrupt::Ticket;
 use super::query::{Fault, Limits, QueryConnection, QueryError};
 use super::rows::{NOTHING, Value, insert_rows, real, text, whole};
 
-/// Filling a table takes no longer: a bound for what somebody waits for.
 const LONGEST: Duration = Duration::from_secs(600);
 
 impl QueryConnection {
-    /// The hidden tables that statements name, each once; of a text that does not compile those before the fault.
+    /// Returns the hidden tables that statements name, each once. For a text that does not compile, returns those before the error.
     pub fn hidden_tables_in(&self, sql: &str) -> Vec<&'static Table> {
         let mut statements = self.released.statements(sql);
         let mut named = Vec::new();
@@ -24,10 +23,10 @@ impl QueryConnection {
         hidden_tables().iter().filter(|table| named.contains(&table.name)).collect()
     }
 
-    /// Writes rows into a hidden table, in place of those it holds or after them. All of them are written, or none.
+    /// Writes rows to a hidden table atomically, replacing its rows if `anew` is set, or else appending.
     ///
     /// # Errors
-    /// `sql_cancelled`: the user stopped it; `sql_timeout`: time or memory ran out; `sql_error`.
+    /// `sql_cancelled` if the user cancelled it, `sql_timeout` if it took too much time or memory, `sql_error`.
     pub fn fill_hidden<const COLUMNS: usize>(
         &self,
         ticket: Ticket,

@@ -1,5 +1,5 @@
-//! What a statement may do: read the visible tables, their insides only from within a view, and call ordinary
-//! functions (docs/formats/database.md#queries). Decided by what it does, never by how its text looks.
+//! Authorization of statements: they may read the visible tables, read internal tables only within a view, and call ordinary
+//! functions (docs/formats/database.md#queries). The decision depends on what a statement does, not on its text.
 
 use std::collections::hash_map::RandomState;
 use std::collections::{BTreeMap, BTreeSet};
@@ -13,20 +13,20 @@ use rusqlite::limits::Limit;
 
 use super::catalogue::{self, Scope};
 
-/// What the authorizer objected to last.
+/// The reason of the last rejection by the authorizer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Objection {
-    /// Nothing.
+    /// No rejection.
     None,
-    /// The schema was asked for.
+    /// Access to the schema.
     Schema,
-    /// A table that is not visible was asked for.
+    /// Access to a table that is not visible.
     Hidden,
-    /// Something was to be changed.
+    /// A change of data.
     Write,
 }
 
-/// The last objection, shared between the authorizer and the query.
+/// The last rejection reason, shared between the authorizer and the query.
 #[derive(Clone, Default)]
 pub(super) struct Objections(Arc<AtomicU8>);
 
@@ -45,7 +45,7 @@ impl Objections {
     }
 }
 
-/// Tables that the released simulator hides and that do not exist here; asking for them has a code of its own.
+/// Tables that the released simulator hides and that do not exist here. Reading them has a separate error code.
 const HIDDEN_TABLES: [&str; 25] = [
     "events",
     "api_costs",
@@ -74,12 +74,12 @@ const HIDDEN_TABLES: [&str; 25] = [
     "_rng_states",
 ];
 
-/// Whether a name belongs to a table that the released simulator hides; case does not count.
+/// Returns whether the released simulator hides a table; case-insensitive.
 pub(super) fn is_hidden_table(name: &str) -> bool {
     HIDDEN_TABLES.iter().any(|hidden| hidden.eq_ignore_ascii_case(name))
 }
 
-/// Tables inside the database, and whether a visible table is made of them row by row.
+/// Internal tables, and whether a visible table has the same rows.
 const INSIDES: [(&str, bool); 11] = [
     ("customer_rows", true),
     ("subscription_rows", true),
@@ -94,24 +94,24 @@ const INSIDES: [(&str, bool); 11] = [
     ("repeated_losses", false),
 ];
 
-/// Functions that reach beyond the database.
+/// Functions with effects outside of the database.
 const UNSAFE_FUNCTIONS: [&str; 2] = ["load_extension", "fts3_tokenizer"];
 
-/// Whether a function reaches beyond the database.
+/// Returns whether a function has effects outside of the database.
 pub(super) fn is_unsafe_function(name: &str) -> bool {
     UNSAFE_FUNCTIONS.contains(&name)
 }
 
-/// Tables that are functions of their arguments and hold nothing of their own.
+/// Table-valued functions.
 const FUNCTIONS: [&str; 4] = ["json_each", "json_tree", "jsonb_each", "jsonb_tree"];
 
-/// Whether a name belongs to the engine's own tables.
+/// Returns whether a name is that of a table of the engine.
 pub(super) fn is_of_engine(name: &str) -> bool {
     let name = name.to_lowercase();
     name.starts_with("sqlite_") || name.starts_with("pragma_") || name == "dbstat"
 }
 
-/// The name of the visible table that an inner one makes up.
+/// Returns the visible table of an internal one.
 pub(super) fn visible_name(inside: &str) -> Option<&'static str> {
     let table = catalogue::tables().iter().find(|table| {
         let stem = inside.strip_suffix("_rows").unwrap_or(inside);
@@ -120,13 +120,12 @@ pub(super) fn visible_name(inside: &str) -> Option<&'static str> {
     table.map(|table| table.name.as_str()).filter(|_| is_inside(inside))
 }
 
-/// Whether a name belongs to a table inside the database; case does not count.
+/// Returns whether a name is that of an internal table; case-insensitive.
 pub(super) fn is_inside(name: &str) -> bool {
     INSIDES.iter().any(|(table, _)| table.eq_ignore_ascii_case(name))
 }
 
-/// Bounds what a statement may be made of. A function works on its values in one step that nothing can stop, so
-/// values and patterns are short.
+/// Sets limits of statements. A function call cannot be interrupted, so values and patterns must be short.
 pub(super) fn limit(connection: &Connection) -> rusqlite::Result<()> {
     connection.set_limit(Limit::SQLITE_LIMIT_ATTACHED, 0)?;
     connection.set_limit(Limit::SQLITE_LIMIT_LENGTH, 2 << 20)?;
@@ -138,7 +137,7 @@ pub(super) fn limit(connection: &Connection) -> rusqlite::Result<()> {
     connection.set_limit(Limit::SQLITE_LIMIT_WORKER_THREADS, 0).map(|_| ())
 }
 
-/// Columns of visible tables that statements read, by table; shared between the authorizer and who asks for them.
+/// Columns of visible tables that statements read, by table; shared between the authorizer and its users.
 #[derive(Clone, Default)]
 pub(super) struct Reads(Arc<Mutex<Columns>>);
 
@@ -146,7 +145,7 @@ pub(super) struct Reads(Arc<Mutex<Columns>>);
 pub(super) type Columns = BTreeMap<String, BTreeSet<String>>;
 
 impl Reads {
-    /// Those since they were last taken.
+    /// Returns and clears the columns.
     pub fn take(&self) -> Columns {
         std::mem::take(&mut self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()))
     }
@@ -157,20 +156,20 @@ impl Reads {
     }
 }
 
-/// The views that visible tables are made of, under names that nobody can write.
+/// The views behind the visible tables, under unpredictable names.
 #[derive(Clone)]
 pub(super) struct InnerViews {
-    /// What their names begin with.
+    /// Prefix of their names.
     secret: String,
     names: Vec<String>,
 }
 
 impl InnerViews {
-    /// Statements that put a temporary table in the place of a view, with the columns that are read filled. None where
-    /// the visible table is no view.
+    /// Returns statements that replace a view by a temporary table with the read columns, or `None` if the visible table is not a
+    /// view.
     pub fn copy(&self, name: &str, read: &BTreeSet<String>) -> Option<String> {
         let table = catalogue::table(name).filter(|table| self.names.contains(&table.name))?;
-        // Tables are joined by customers, and of columns that are joined by USING nobody says that they are read.
+        // The authorizer does not report columns of USING, and tables are joined by customer.
         let is_filled = |column: &&str| {
             read.contains(*column) || *column == CUSTOMER || table.key.iter().any(|key| key == column)
         };
@@ -189,26 +188,26 @@ impl InnerViews {
     }
 }
 
-/// The column that tables are joined by.
+/// The join column of the tables.
 pub(super) const CUSTOMER: &str = "customer_id";
 
-/// Watches what statements do.
+/// The authorizer of statements.
 pub(super) struct Guard {
     objections: Objections,
     reads: Reads,
-    /// None where tables have no inside.
+    /// `None` if there are no internal tables.
     views: Option<InnerViews>,
-    /// What statements may name.
+    /// Tables that statements may name.
     scope: Scope,
-    /// Every table, view and module that there is, in lower case. Any other name is that of a common table expression.
+    /// Names of all tables, views and modules, in lower case. Any other name is that of a common table expression.
     existing: BTreeSet<String>,
 }
 
 impl Guard {
-    /// Puts the views that visible tables are made of behind views of the same names.
+    /// Moves the views of the visible tables behind new views with the same names.
     ///
-    /// SQLite tells the authorizer from within which view a table is read, but a common table expression counts as
-    /// a view there. So the insides open only to views whose names nobody can write.
+    /// SQLite reports to the authorizer in which view a table is read, but it treats common table expressions like views. So
+    /// internal tables are readable only in views with unpredictable names.
     pub fn set_up(connection: &Connection, scope: Scope) -> rusqlite::Result<Guard> {
         let existing = existing_names(connection)?;
         let secret = format!("inner_{:016x}{:016x}_", random_bits(), random_bits());
@@ -227,28 +226,28 @@ impl Guard {
         Ok(Guard { objections: Objections::default(), reads: Reads::default(), views, scope, existing })
     }
 
-    /// A guard of tables that have no inside.
+    /// Returns a guard without internal tables.
     pub fn of_ordinary_tables(connection: &Connection, scope: Scope) -> rusqlite::Result<Guard> {
         let existing = existing_names(connection)?;
         Ok(Guard { objections: Objections::default(), reads: Reads::default(), views: None, scope, existing })
     }
 
-    /// The columns that statements read under this guard.
+    /// Returns the columns that statements read.
     pub fn reads(&self) -> Reads {
         self.reads.clone()
     }
 
-    /// The inner views.
+    /// Returns the inner views.
     pub fn views(&self) -> Option<InnerViews> {
         self.views.clone()
     }
 
-    /// The objections of this guard.
+    /// Returns the rejection reasons.
     pub fn objections(&self) -> Objections {
         self.objections.clone()
     }
 
-    /// Allows or denies one thing that a statement would do.
+    /// Allows or denies one action of a statement.
     pub fn authorize(&self, context: &AuthContext<'_>) -> Authorization {
         match self.problem(context) {
             None => Authorization::Allow,
@@ -292,8 +291,8 @@ impl Guard {
         let visible =
             catalogue::table(&name).is_some() || FUNCTIONS.contains(&name.as_str()) || is_inner_view(&name);
         let from_view = accessor.is_some_and(is_inner_view);
-        // Without a column only rows are counted: those of a common table expression, or of a view that the
-        // planner has opened up. Everything else that exists and is not listed is refused.
+        // Without a column, only rows are counted: those of a common table expression, or of a view that the
+        // planner has flattened. Any other table that exists and is not listed is rejected.
         let counted = column.is_empty()
             && match inside {
                 Some((_, behind_view)) => *behind_view,
@@ -308,7 +307,7 @@ impl Guard {
     }
 }
 
-/// The names of all tables, views and modules of a connection, in lower case.
+/// Returns the names of all tables, views and modules of a connection, in lower case.
 fn existing_names(connection: &Connection) -> rusqlite::Result<BTreeSet<String>> {
     let names = |sql: &str| -> rusqlite::Result<Vec<String>> {
         connection.prepare(sql)?.query_map([], |row| row.get(0))?.collect()
@@ -320,15 +319,14 @@ fn existing_names(connection: &Connection) -> rusqlite::Result<BTreeSet<String>>
     Ok(existing.into_iter().map(|name| name.to_lowercase()).collect())
 }
 
-/// A time in which the program itself works on a connection and nothing is refused. It ends when this is dropped, also by a
-/// panic.
+/// Disables the authorizer while the program itself works on a connection. Dropping it, also by a panic, restores the previous
+/// state.
 pub(super) struct Trust<'a> {
     trusted: &'a AtomicBool,
     before: bool,
 }
 
 impl Trust<'_> {
-    /// Begins one.
     pub fn begin(trusted: &AtomicBool) -> Trust<'_> {
         Trust { trusted, before: trusted.swap(true, Ordering::Relaxed) }
     }
@@ -340,7 +338,7 @@ impl Drop for Trust<'_> {
     }
 }
 
-/// 64 bits that nobody can foretell. They only name views of one connection, never anything of a run.
+/// Returns 64 unpredictable bits. They only name views of one connection and never affect a run.
 fn random_bits() -> u64 {
     RandomState::new().build_hasher().finish()
 }

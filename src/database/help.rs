@@ -1,4 +1,4 @@
-//! Help for the SQL prompt: what an error means here, and why a result may be empty.
+//! Help for SQL: explanations of errors and of empty results.
 
 use std::collections::BTreeSet;
 
@@ -8,8 +8,8 @@ use super::mathematics::register_mathematics;
 use super::tokens::{Token, TokenKind, tokens};
 use novamind_base::nearest;
 
-/// The message of the engine, with what is valid instead. What is proposed comes from the visible tables, the functions
-/// of the engine and the statement itself, and from nothing else.
+/// Returns the message of the engine with valid alternatives. Suggestions come only from the visible tables, the functions of
+/// the engine and the statement itself.
 pub(super) fn explain_error(message: &str, sql: &str, scope: Scope) -> String {
     if let Some(column) = message.strip_prefix("no such column: ") {
         return unknown_column(column, sql, scope);
@@ -36,10 +36,10 @@ pub(super) fn explain_error(message: &str, sql: &str, scope: Scope) -> String {
     message.to_owned()
 }
 
-/// `; did you mean customers?`, if a known name looks like one that does not exist.
+/// Returns `; did you mean customers?` if a known name is similar to an unknown one.
 fn meant<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
     let near = nearest(name, known);
-    // A name of which every other letter differs is no help.
+    // A name that differs in every second letter does not help.
     let is_close =
         |known: &&&str| strsim::damerau_levenshtein(&name.to_lowercase(), known) * 3 <= name.len().max(3);
     let begins =
@@ -53,7 +53,7 @@ fn meant<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
     }
 }
 
-/// Names of the functions that a statement can call.
+/// Returns the names of the functions that a statement can call.
 fn functions() -> Vec<String> {
     let names = || -> rusqlite::Result<Vec<String>> {
         let engine = rusqlite::Connection::open_in_memory()?;
@@ -80,7 +80,7 @@ fn unknown_table(name: &str, scope: Scope) -> String {
         }
         None => meant(if alone.is_empty() { name } else { alone }, names.iter().copied()),
     };
-    // A question ends with its mark.
+    // A question already ends with its mark.
     let end = if help.ends_with('?') { " The" } else { "; the" };
     format!("there is no table {name}{help}{end} tables are {}", names.join(", "))
 }
@@ -96,7 +96,7 @@ fn unknown_column(column: &str, sql: &str, scope: Scope) -> String {
     let columns = mentioned.iter().flat_map(|table| &table.columns).map(|own| own.name.as_str());
     let columns: BTreeSet<&str> = columns.collect();
     let mut help = match columns.contains(alone) {
-        // It is there, under another name of its table.
+        // The column exists under another alias of its table.
         true => String::new(),
         false => meant(alone, columns.iter().copied()),
     };
@@ -118,14 +118,14 @@ fn unknown_column(column: &str, sql: &str, scope: Scope) -> String {
     format!("there is no column {column}{help}{end}{}", lists.join("; "))
 }
 
-/// Tables whose names stand in a statement as whole words.
+/// Returns the tables whose names occur in a statement as whole words.
 fn mentioned_tables(sql: &str, scope: Scope) -> Vec<&'static Table> {
     let words: Vec<&str> = sql.split(|letter: char| !letter.is_alphanumeric() && letter != '_').collect();
     let stands = |name: &str| words.iter().any(|word| word.eq_ignore_ascii_case(name));
     scope.tables().filter(|table| table.name.split('.').all(stands)).collect()
 }
 
-/// For a statement without rows: comparisons `column = 'text'` with a text the column can never hold.
+/// Returns a hint for an empty result: comparisons `column = 'text'` with a text that the column never has.
 pub(super) fn hints(sql: &str, scope: Scope) -> Option<String> {
     let mentioned = mentioned_tables(sql, scope);
     let mut hints = Vec::new();
@@ -143,8 +143,8 @@ pub(super) fn hints(sql: &str, scope: Scope) -> Option<String> {
     (!hints.is_empty()).then(|| hints.join("; "))
 }
 
-/// Pairs of column and text out of `column = 'text'`, wherever they stand and whichever side is which. A text in double
-/// quotes is one where the engine finds no column of that name.
+/// Returns the pairs of column and text of comparisons, in either order. As in the engine, a name in double quotes is a text if
+/// no column has it.
 fn text_comparisons(sql: &str, scope: Scope) -> Vec<(String, String)> {
     let own = tokens(sql);
     let mut found = Vec::new();
@@ -230,7 +230,7 @@ mod tests {
         let inside =
             ["c_max", "q_max", "sqlite_master", "load_extension", "pragma_table_info", "fts3_tokenizer"];
         for name in hidden.into_iter().chain(inside) {
-            // A letter is missing, at every place.
+            // Each typo omits one letter.
             for at in 0..name.len() {
                 let typed = format!("{}{}", &name[..at], &name[at + 1..]);
                 for kind in ["table", "column", "function"] {

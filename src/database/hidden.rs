@@ -1,5 +1,5 @@
-//! The hidden tables of the x-ray: ordinary tables in memory that belongs to one connection, under a schema of their own
-//! (docs/formats/hidden-tables.md). Nothing of them is in any file.
+//! The hidden tables of the x-ray: ordinary tables in the memory of one connection, in a separate schema
+//! (docs/formats/hidden-tables.md). They are never in a file.
 
 use rusqlite::Connection;
 
@@ -8,11 +8,11 @@ use super::catalogue::{HIDDEN_SCHEMA, Table, hidden_tables};
 /// A value of a hidden table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum HiddenValue {
-    /// There is none.
+    /// SQL NULL.
     Null,
-    /// A whole number; truth values are 0 and 1.
+    /// An integer; Booleans are 0 and 1.
     Whole(i64),
-    /// A number.
+    /// A floating-point number.
     Real(f64),
     /// A word of a fixed list.
     Word(&'static str),
@@ -48,9 +48,9 @@ impl<T: Into<HiddenValue>> From<Option<T>> for HiddenValue {
     }
 }
 
-/// Declares the tables, empty, beside those of a connection.
+/// Creates the empty tables on a connection.
 pub(super) fn attach(connection: &Connection) -> rusqlite::Result<()> {
-    // A connection that only reads could write to no memory that is attached as `:memory:`.
+    // A read-only connection cannot write to a database that is attached as `:memory:`.
     connection.execute_batch(&format!("ATTACH 'file:{HIDDEN_SCHEMA}?mode=memory' AS {HIDDEN_SCHEMA}"))?;
     let declarations: Vec<String> = hidden_tables().iter().map(Table::declaration).collect();
     connection.execute_batch(&declarations.join(";\n"))

@@ -1,4 +1,4 @@
-//! Stopping queries: on request, when their time is over, or when they need too much of the machine.
+//! Interrupting queries: on request, and at their limits of time, steps and memory.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -6,36 +6,35 @@ use std::time::{Duration, Instant};
 
 use super::memory::bytes_in_use;
 
-/// Steps of SQLite's machine between two looks at clock and memory: few, for each may take a value of two megabytes.
+/// Steps of SQLite's virtual machine between checks of time and memory. Few, because each can process two megabytes.
 pub(super) const STEPS_BETWEEN_LOOKS: u32 = 250;
 
-/// Memory that SQLite may take for a query beyond what it had before, in bytes: sorting and recursion keep their
-/// rows in memory.
+/// Maximum additional memory of a query, in bytes: sorting and recursion keep their rows in memory.
 const MOST_MEMORY: u64 = 512 << 20;
 
-/// Stops a running query from another thread, or by itself when its time is over.
+/// Stops a running query from another thread, or at its limits.
 #[derive(Debug, Clone)]
 pub struct Interrupt(Arc<Clockwork>);
 
-/// Names a query from the moment somebody asks for it. Whoever asks on another thread draws it first: a stop that comes
-/// before the query begins then reaches it all the same.
+/// Identifies a query from the moment of its request. A caller on another thread takes the ticket first, so that a stop before
+/// the start of the query is not lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Ticket(u64);
 
 #[derive(Debug)]
 struct Clockwork {
-    /// Tickets that were drawn.
+    /// Number of issued tickets.
     drawn: AtomicU64,
-    /// The newest ticket that is stopped; every older one is too.
+    /// The newest stopped ticket; all older ones are stopped, too.
     stopped: AtomicU64,
-    /// Ticket of the query that runs, or ran last.
+    /// Ticket of the running or last query.
     running: AtomicU64,
     started: Instant,
-    /// Milliseconds after `started` at which the running query has to end.
+    /// Deadline of the running query, milliseconds after `started`.
     deadline: AtomicU64,
-    /// Looks that are left to the running query.
+    /// Remaining checks of the running query.
     looks: AtomicU64,
-    /// Bytes that may be in use while it runs.
+    /// Maximum bytes in use while it runs.
     memory: AtomicU64,
     cause: AtomicU64,
 }
@@ -43,11 +42,11 @@ struct Clockwork {
 /// Why a query was stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Cause {
-    /// Somebody asked for it.
+    /// A request.
     Request,
-    /// Its time, or its number of steps, was over.
+    /// The limit of time or steps.
     Time,
-    /// It took too much memory.
+    /// The limit of memory.
     Memory,
 }
 
@@ -65,22 +64,22 @@ impl Interrupt {
         }))
     }
 
-    /// A ticket for a query that will be asked.
+    /// Returns a ticket for a later query.
     pub fn ticket(&self) -> Ticket {
         Ticket(self.0.drawn.fetch_add(1, Ordering::Relaxed) + 1)
     }
 
-    /// Stops every query whose ticket was drawn before, whether it runs already or not.
+    /// Stops every query whose ticket was issued before, whether it has started or not.
     pub fn stop(&self) {
         self.0.stopped.fetch_max(self.0.drawn.load(Ordering::Relaxed), Ordering::Relaxed);
     }
 
-    /// Whether what has this ticket was asked to end.
+    /// Returns whether the query with a ticket was stopped.
     pub fn has_stopped(&self, ticket: Ticket) -> bool {
         self.0.stopped.load(Ordering::Relaxed) >= ticket.0
     }
 
-    /// Begins a query, or a script, with this much time and so many steps.
+    /// Starts a query or a script with limits of time and steps.
     pub(super) fn begin(&self, ticket: Ticket, time: Duration, steps: Option<u64>) {
         self.0.running.store(ticket.0, Ordering::Relaxed);
         self.0.memory.store(bytes_in_use().saturating_add(MOST_MEMORY), Ordering::Relaxed);
@@ -88,7 +87,7 @@ impl Interrupt {
         self.go_on(time, steps);
     }
 
-    /// Begins the next statement of a script.
+    /// Starts the next statement of a script.
     pub(super) fn go_on(&self, time: Duration, steps: Option<u64>) {
         let deadline = self.0.started.elapsed() + time;
         self.0.deadline.store(deadline.as_millis() as u64, Ordering::Relaxed);
@@ -96,7 +95,7 @@ impl Interrupt {
         self.0.looks.store(looks, Ordering::Relaxed);
     }
 
-    /// Why the query was stopped.
+    /// Returns why the query was stopped.
     pub(super) fn cause(&self) -> Cause {
         match self.0.cause.load(Ordering::Relaxed) {
             _ if self.is_stopped() => Cause::Request,
@@ -105,12 +104,12 @@ impl Interrupt {
         }
     }
 
-    /// Whether somebody asked the running query to end, before it began or since.
+    /// Returns whether the running query was stopped on request.
     pub(super) fn is_stopped(&self) -> bool {
         self.0.stopped.load(Ordering::Relaxed) >= self.0.running.load(Ordering::Relaxed)
     }
 
-    /// Whether the running query has to end now.
+    /// Returns whether the running query must end now.
     pub(super) fn must_end(&self) -> bool {
         let own = &self.0;
         if bytes_in_use() > own.memory.load(Ordering::Relaxed) {

@@ -1,4 +1,4 @@
-//! Issues as packed days: a run holds issues of one group that were opened on a day, by customers in ascending order.
+//! Issues as packed days: a run has the issues of one group that were opened on a day, in ascending order of customers.
 
 use rusqlite::vtab::Context;
 use std::ffi::c_int;
@@ -15,11 +15,11 @@ pub(super) struct IssueRun {
     pub first: u32,
     pub group: Group,
     pub customers: Vec<u32>,
-    /// Day on which each was solved; 0 while it is open.
+    /// Day of resolution of each; 0 while it is open.
     pub solved: Vec<u32>,
 }
 
-/// What a row of issues holds besides day and customer.
+/// The columns of issues besides day and customer.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct IssueRow {
     pub issue: u32,
@@ -28,7 +28,7 @@ pub(super) struct IssueRow {
 }
 
 impl IssueRun {
-    /// The issues that were opened on a day.
+    /// Returns the runs of the issues that were opened on a day.
     pub fn runs_of(opened: &[IssueOpened]) -> Vec<IssueRun> {
         let mut runs: Vec<IssueRun> = Vec::new();
         for issue in opened {
@@ -91,7 +91,7 @@ pub(super) mod column {
     pub const SOLVED_DAY: c_int = 6;
 }
 
-/// A column of a row that was opened on a day, by the clock of issues.
+/// Sets the result to a column of an issue, with ages by the issue clock.
 pub(super) fn show(
     (clock, day): (&[u32], u32),
     row: IssueRow,
@@ -109,15 +109,15 @@ pub(super) fn show(
     }
 }
 
-/// Days that an issue aged: by the clock that ticks on days on which issues are worked on. Solutions come before the
-/// tick of their day, new issues after it. `clock` tells what it showed after each day.
+/// Returns the age of an issue by the clock, which ticks on days with work on issues. Resolutions precede the tick of their
+/// day, new issues follow it. `clock` has its value after each day.
 pub(super) fn days_open(clock: &[u32], opened: u32, solved: Option<u32>) -> u32 {
     let after = |day: u32| clock.get(day as usize).or(clock.last()).copied().unwrap_or(0);
     let until = solved.map_or_else(|| clock.last().copied().unwrap_or(0), |day| after(day.saturating_sub(1)));
     until.saturating_sub(after(opened))
 }
 
-/// The day on which an issue was opened, by its position among the days.
+/// Returns the position of the day on which an issue was opened.
 pub(super) fn day_of(days: &[Arc<PackedDay>], issue: u32) -> Option<usize> {
     let first = |day: &PackedDay| day.open::<IssueRun>(0).map_or(u32::MAX, |run| run.first);
     days.partition_point(|day| first(day) <= issue).checked_sub(1)
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn an_issue_ages_with_the_clock_from_its_day_to_the_eve_of_its_solution() {
-        // The clock stands still on day 3.
+        // The clock does not tick on day 3.
         let clock = [0, 1, 2, 2, 3, 4];
         for (opened, solved, days) in
             [(1, None, 3), (1, Some(5), 2), (2, Some(3), 0), (2, Some(4), 0), (3, Some(5), 1), (5, None, 0)]

@@ -1,12 +1,12 @@
-//! The ledger as compact days: most of its rows are costs of leads, which come in the order of their customers, and
-//! payments, which repeat few amounts.
+//! The ledger as packed days. Most rows are lead costs, in the order of their customers, and payments with few different
+//! amounts.
 
 use std::collections::BTreeMap;
 
 use super::packing::{Kinds, PackedRows, Packer, Unpacker};
 use novamind_world::events::Category;
 
-/// Categories in ascending order of their words.
+/// Categories in alphabetical order.
 pub(super) const CATEGORIES: [&str; 12] = [
     "ad_revenue",
     "advertising",
@@ -23,10 +23,10 @@ pub(super) const CATEGORIES: [&str; 12] = [
 ];
 pub(super) const LEADS: usize = 7;
 pub(super) const PAYMENTS: usize = 11;
-/// Those that never take money.
+/// Income categories.
 pub(super) const INCOME: Kinds = 1 | 1 << 6 | 1 << PAYMENTS;
 
-/// A movement of cash that is neither a lead's cost nor a payment.
+/// A ledger entry that is neither a lead cost nor a payment.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct OtherEntry {
     pub category: u8,
@@ -34,12 +34,12 @@ pub(super) struct OtherEntry {
     pub note: String,
 }
 
-/// The movements of cash of one day: costs of leads, payments, everything else.
+/// The ledger entries of a day: lead costs, payments, others.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct LedgerDay {
     day: u32,
     first: u64,
-    /// Dollars that a lead cost, negative.
+    /// Cost per lead in dollars, negative.
     pub lead_cost: f64,
     leads: u32,
     payments: u32,
@@ -48,7 +48,7 @@ pub(super) struct LedgerDay {
     others: Vec<OtherEntry>,
 }
 
-/// Customers of leads, and payments with their customers.
+/// Customers of lead costs, and payments with their customers.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Movements {
     pub leads: Vec<u32>,
@@ -56,7 +56,7 @@ pub(super) struct Movements {
 }
 
 impl LedgerDay {
-    /// A day without movements.
+    /// Returns a day without entries.
     pub fn of(day: u32, first: u64, lead_cost: f64) -> LedgerDay {
         let packed = Movements::default().packed();
         // SQLite keeps no negative zero.
@@ -64,19 +64,19 @@ impl LedgerDay {
         LedgerDay { day, first, lead_cost, packed, ..LedgerDay::default() }
     }
 
-    /// Sets leads and payments.
+    /// Sets lead costs and payments.
     pub fn set(&mut self, movements: &Movements) {
         (self.leads, self.payments) = (movements.leads.len() as u32, movements.payments.len() as u32);
         self.packed = movements.packed();
     }
 
-    /// Adds another movement.
+    /// Adds another entry.
     pub fn push(&mut self, category: Category, amount: f64, note: String) {
         let category = CATEGORIES.binary_search(&category.id()).unwrap_or_default() as u8;
         self.others.push(OtherEntry { category, amount: amount + 0.0, note });
     }
 
-    /// As it stands in the file.
+    /// Returns the bytes in the file.
     pub fn bytes(&self) -> Vec<u8> {
         let mut packer = Packer::default();
         packer.number(self.first);
@@ -95,7 +95,7 @@ impl LedgerDay {
         packer.finish()
     }
 
-    /// A day as it was packed; none when the bytes are not those of a day.
+    /// Parses the bytes of a day. Returns `None` if they are invalid.
     pub fn read(day: u32, bytes: &[u8]) -> Option<LedgerDay> {
         let mut unpacker = Unpacker::of(bytes);
         let (first, lead_cost) = (unpacker.number()?, unpacker.float()?);
@@ -115,7 +115,7 @@ impl LedgerDay {
         (sound && unpacker.is_empty()).then_some(read)
     }
 
-    /// What stands at a place, from 0.
+    /// Returns the entry at a place, from 0.
     pub fn at(&self, place: u64) -> Movement<'_> {
         let (leads, payments) = (u64::from(self.leads), u64::from(self.payments));
         match place {
@@ -126,7 +126,7 @@ impl LedgerDay {
     }
 }
 
-/// What stands at a place of a day.
+/// An entry at a place of a day.
 pub(super) enum Movement<'a> {
     Lead(usize),
     Payment(usize),
@@ -152,14 +152,14 @@ impl Movements {
         for (customer, amount) in &self.payments {
             let step = i64::from(*customer) - before;
             before = i64::from(*customer);
-            // Small steps in either direction are small numbers.
+            // Zigzag encoding: small differences of either sign are small numbers.
             packer.number((step << 1 ^ step >> 63) as u64);
             packer.number(places[&amount.to_bits()]);
         }
         packer.finish()
     }
 
-    /// None when the bytes are not those of movements.
+    /// Parses packed entries. Returns `None` if the bytes are invalid.
     pub fn unpack(bytes: &[u8]) -> Option<Movements> {
         let mut unpacker = Unpacker::of(bytes);
         let leads = unpacker.ascending()?;
@@ -212,7 +212,7 @@ pub(super) fn payment_note(customer: u32) -> String {
 }
 
 impl LedgerDay {
-    /// Every row: number, category, amount, note.
+    /// Returns all rows: number, category, amount, note.
     pub fn rows(&self) -> impl Iterator<Item = (u64, &'static str, f64, String)> + '_ {
         let movements = Movements::unpack(&self.packed).unwrap_or_default();
         (0..self.len()).map(move |place| {

@@ -1,10 +1,9 @@
-//! The observable company: what a player may ask with SQL, and nothing else.
+//! The observable company as a database for SQL queries of the player.
 //!
-//! `world.db` is a projection of the facts of each day, never the truth: a writer thread ([`Projector`]) turns
-//! facts into rows while the player reads and decides, and the file can be rebuilt from the trajectory at any
-//! time. Queries go through a guarded read-only connection ([`QueryConnection`]). What is hidden is never written here, so
-//! no query, tool or editor can find it (docs/formats/database.md). The connection of the x-ray keeps it beside the file, in
-//! memory of its own (docs/formats/hidden-tables.md).
+//! `world.db` is a projection of the facts of each day. A writer thread ([`Projector`]) converts facts to rows while the player
+//! reads and decides, and the file can be rebuilt from the trajectory at any time. Queries use a guarded read-only connection
+//! ([`QueryConnection`]). Hidden state is never written here, so no query, tool or editor can find it
+//! (docs/formats/database.md). The connection of the x-ray has hidden tables in separate memory (docs/formats/hidden-tables.md).
 
 pub mod catalogue;
 pub mod query;

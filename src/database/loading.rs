@@ -1,4 +1,4 @@
-//! Packed days out of the file: all of them for the writer, and table by table for statements on a file that stands still.
+//! Loading packed days from the file: all of them for the writer, or table by table for queries on a file without a writer.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -13,10 +13,9 @@ use super::notices::{Inbox, NoticeDay, RepeatedLoss};
 use super::packing::{PackedDay, Run};
 use novamind_world::events::{LossCause, UsageRows};
 
-/// Reads the days of one table; none where one of them is not whole.
+/// Loads the days of one table. Returns `None` if a day is damaged.
 type Loader = fn(&Connection, &mut BlockStore) -> Option<()>;
 
-/// The visible tables that are packed.
 const LOADERS: [(&str, Loader); 5] = [
     ("daily_usage", load_usage),
     ("ads_revenue", load_ads),
@@ -25,43 +24,43 @@ const LOADERS: [(&str, Loader); 5] = [
     ("ledger", load_ledger),
 ];
 
-/// The days of all tables.
+/// Loads the days of all tables.
 pub(super) fn load_store(connection: &Connection) -> Option<BlockStore> {
     let mut store = BlockStore::default();
     LOADERS.iter().try_for_each(|(_, load)| load(connection, &mut store))?;
     Some(store)
 }
 
-/// Where the blocks come from that a query sees.
+/// Source of the blocks of a query.
 pub(super) enum BlockSource {
-    /// From the writer: all of them, and a gate that is closed while a commit and its blocks become visible together.
+    /// The writer's store, with a gate that is closed while a commit and its blocks become visible together.
     Writer(SharedStore, Arc<RwLock<()>>),
-    /// From a file that nobody in this process writes: those of a table are read when a statement first names it.
+    /// A file without a writer in this process. The blocks of a table are loaded when a statement first names it.
     File(RefCell<BlocksOfFile>),
 }
 
-/// The days of those tables that statements have named so far.
+/// The days of the tables that statements have named so far.
 #[derive(Default)]
 pub(super) struct BlocksOfFile {
     store: BlockStore,
     loaded: BTreeSet<&'static str>,
-    /// State of the file that they were read from, as SQLite counts it.
+    /// SQLite's data version of the file at loading.
     version: Option<i64>,
     damaged: bool,
 }
 
 impl BlocksOfFile {
-    /// What was read.
+    /// Returns the loaded blocks.
     pub fn store(&self) -> &BlockStore {
         &self.store
     }
 
-    /// Whether days were found that are not as they were written.
+    /// Returns whether damaged days were found.
     pub fn is_damaged(&self) -> bool {
         self.damaged
     }
 
-    /// Forgets everything if the file is in another state than it was.
+    /// Clears the blocks if the file has changed.
     pub fn refresh(&mut self, connection: &Connection) {
         let version = connection.query_row("PRAGMA data_version", [], |row| row.get::<_, i64>(0)).ok();
         if version.is_none() || version != self.version {
@@ -69,7 +68,7 @@ impl BlocksOfFile {
         }
     }
 
-    /// Reads the days of the tables that are not there yet; false where one is not whole, or the reading was stopped.
+    /// Loads missing tables. Returns false if a day is damaged or loading was stopped.
     pub fn load(&mut self, connection: &Connection, tables: &[String]) -> bool {
         for (table, load) in LOADERS {
             if !tables.iter().any(|own| own == table) || self.loaded.contains(table) {
@@ -83,7 +82,7 @@ impl BlocksOfFile {
         true
     }
 
-    /// Days were found that are not as they were written.
+    /// Marks the blocks as damaged.
     pub fn set_damaged(&mut self) {
         self.damaged = true;
     }
@@ -122,7 +121,7 @@ fn load_runs<R: Run>(connection: &Connection, table: &str) -> Option<Vec<Arc<Pac
         .collect()
 }
 
-/// Packed days of a table; none where one is not whole.
+/// Loads the packed days of a table. Returns `None` if one is damaged.
 fn load_days<D>(
     connection: &Connection,
     table: &str,
@@ -133,7 +132,7 @@ fn load_days<D>(
     rows.map(|row| row.ok().and_then(|(day, packed)| read(day, &packed)).map(Arc::new)).collect()
 }
 
-/// What the clock of issues showed after each day, from day 0 on.
+/// Loads the issue clock after each day, from day 0 on.
 fn load_clock(connection: &Connection) -> Option<Vec<u32>> {
     let mut statement = connection.prepare("SELECT aged FROM issue_clock ORDER BY day").ok()?;
     let rows = statement.query_map([], |row| row.get(0)).ok()?;

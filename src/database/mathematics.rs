@@ -1,6 +1,6 @@
 //! SQL's mathematical functions, with the semantics that SQLite documents (<https://www.sqlite.org/lang_mathfunc.html>).
 //!
-//! They are registered on each connection that compiles or runs statements, so they exist however SQLite was compiled.
+//! They are registered on each connection that compiles or runs statements, so they exist in every build of SQLite.
 //! `libm` computes them, so results agree between machines.
 
 use std::f64::consts::PI;
@@ -78,12 +78,12 @@ pub fn register_mathematics(connection: &Connection) -> rusqlite::Result<()> {
     connection.create_scalar_function("pi", 0, flags, |_| Ok(PI))
 }
 
-/// A logarithm, which does not exist for 0 and less.
+/// Returns a logarithm, which is not defined for 0 and below.
 fn of_positive(logarithm: OfOne, x: f64) -> f64 {
     if x > 0.0 { logarithm(x) } else { f64::NAN }
 }
 
-/// The logarithm of `x` to a base, which must be greater than 1, as SQLite requires.
+/// Returns the logarithm of `x` to a base, which must be greater than 1, as SQLite requires.
 fn log_to_base(base: f64, x: f64) -> f64 {
     let divisor = of_positive(libm::log, base);
     if divisor > 0.0 { of_positive(libm::log, x) / divisor } else { f64::NAN }

@@ -1,7 +1,7 @@
-//! How much memory SQLite uses.
-#![expect(unsafe_code, reason = "SQLite tells it only through its C interface")]
+//! Memory usage of SQLite.
+#![expect(unsafe_code, reason = "SQLite reports it only through its C interface")]
 
-/// Bytes that SQLite has allocated in this process.
+/// Returns the bytes that SQLite has allocated in this process.
 pub(super) fn bytes_in_use() -> u64 {
     // SAFETY: the function takes nothing, may be called at any time from any thread, and only reads a counter.
     let bytes = unsafe { rusqlite::ffi::sqlite3_memory_used() };

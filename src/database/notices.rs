@@ -1,15 +1,15 @@
-//! The inbox as compact days: in memory for queries, as blobs in the file.
+//! The inbox as packed days: in memory for queries, as blobs in the file.
 //!
-//! A lead that was lost after its thread had two turns is reported again every day until the run ends: millions of rows
-//! for a large company. They are kept as one fact a lead, in the order in which they began, and a day knows how many of
-//! them it repeats.
+//! A lead that was lost after its thread had two turns is reported again every day until the run ends: millions of rows for a
+//! large company. They are stored as one entry per lead, in the order of their start, and a day stores how many of them it
+//! repeats.
 
 use std::sync::Arc;
 
 use super::packing::{Kinds, PackedRows, Packer, Unpacker};
 use novamind_world::events::{LossCause, Notice};
 
-/// Types as the table writes them, in ascending order.
+/// Types in alphabetical order.
 pub(super) const TYPES: [&str; 8] = [
     "deal_won",
     "group_research_complete",
@@ -21,33 +21,33 @@ pub(super) const TYPES: [&str; 8] = [
     "social_media",
 ];
 
-/// Place among [`TYPES`] of the type of losses.
+/// Index of losses in [`TYPES`].
 pub(super) const LEAD_LOST: u8 = 3;
 
-/// Place of a notice's type among [`TYPES`].
+/// Returns the index of a notice's type in [`TYPES`].
 pub(super) fn type_of(notice: &Notice) -> u8 {
     TYPES.binary_search(&notice.kind()).map_or(LEAD_LOST, |at| at as u8)
 }
 
-/// A loss that is reported every day from some day on.
+/// A loss that is reported every day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct RepeatedLoss {
-    /// The company.
+    /// Customer number.
     pub customer: u32,
-    /// Day of the message that got no answer.
+    /// Day of the unanswered message.
     pub message_day: u32,
-    /// Whose answer it was that did not come.
+    /// Cause of the loss.
     pub cause: LossCause,
 }
 
 impl RepeatedLoss {
-    /// The loss that a notice repeats.
+    /// Returns the loss that a notice repeats.
     pub fn of(notice: &Notice) -> Option<RepeatedLoss> {
         let Notice::LeadLossRepeated { customer, cause, message_day, .. } = *notice else { return None };
         Some(RepeatedLoss { customer, message_day, cause })
     }
 
-    /// In words.
+    /// Returns the text of the notice.
     pub fn words(&self) -> String {
         let RepeatedLoss { customer, message_day, .. } = self;
         match self.cause {
@@ -63,22 +63,22 @@ impl RepeatedLoss {
     }
 }
 
-/// The notices of one day.
+/// The notices of a day.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct NoticeDay {
     pub day: u32,
     /// Number of the first notice.
     pub first: u64,
-    /// Losses that are repeated: so many, from the first one that ever was.
+    /// Number of repeated losses, counted from the first of the run.
     pub repeats: u32,
-    /// Notices that stand before the repeated ones; those of later calls follow them.
+    /// Number of notices before the repeated ones; those of later calls follow them.
     pub before: u32,
     types: Vec<u8>,
     texts: Texts,
 }
 
 impl NoticeDay {
-    /// A day without notices.
+    /// Returns a day without notices.
     pub fn of(day: u32, first: u64) -> NoticeDay {
         NoticeDay { day, first, ..NoticeDay::default() }
     }
@@ -89,12 +89,12 @@ impl NoticeDay {
         self.texts.push(text);
     }
 
-    /// The simulated day is complete: these losses are repeated on it.
+    /// Completes the simulated day with its number of repeated losses.
     pub fn repeat(&mut self, repeats: u32) {
         (self.before, self.repeats) = (self.types.len() as u32, repeats);
     }
 
-    /// What stands at a place, from 0.
+    /// Returns the notice at a place, from 0.
     pub fn at(&self, place: u64) -> Place {
         let (before, repeats) = (u64::from(self.before), u64::from(self.repeats));
         match place {
@@ -104,17 +104,17 @@ impl NoticeDay {
         }
     }
 
-    /// Type of an own notice.
+    /// Returns the type of a notice of the day itself.
     pub fn type_at(&self, at: usize) -> u8 {
         self.types[at]
     }
 
-    /// Text of an own notice.
+    /// Returns the text of a notice of the day itself.
     pub fn text_at(&self, at: usize) -> String {
         self.texts.get(at)
     }
 
-    /// As it stands in the file.
+    /// Returns the bytes in the file.
     pub fn bytes(&self) -> Vec<u8> {
         let mut packer = Packer::default();
         for number in [self.first, self.repeats.into(), self.before.into(), self.types.len() as u64] {
@@ -125,7 +125,7 @@ impl NoticeDay {
         packer.finish()
     }
 
-    /// A day as it was packed; none when the bytes are not those of a day.
+    /// Parses the bytes of a day. Returns `None` if they are invalid.
     pub fn read(day: u32, bytes: &[u8]) -> Option<NoticeDay> {
         let mut unpacker = Unpacker::of(bytes);
         let first = unpacker.number()?;
@@ -164,7 +164,7 @@ impl PackedRows for NoticeDay {
     }
 }
 
-/// What stands at a place of a day.
+/// A notice at a place of a day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Place {
     /// A notice of the day itself.
@@ -173,20 +173,20 @@ pub(super) enum Place {
     Repeated(usize),
 }
 
-/// Texts that differ in their numbers: each is a pattern of the day and the numbers that fill it.
+/// Texts that differ in their numbers: each is a pattern of the day with its numbers.
 #[derive(Debug, Clone, PartialEq, Default)]
 struct Texts {
     /// Texts with a [`NUMBER`] for each of their numbers.
     patterns: Vec<String>,
-    /// Where each text begins among the bytes.
+    /// Offset of each text.
     begins: Vec<u32>,
     /// Pattern and numbers of each text.
     packed: Vec<u8>,
 }
 
-/// Stands for a number in a pattern; no text has it.
+/// Placeholder of a number in a pattern; no text has this character.
 const NUMBER: char = '\u{0}';
-/// Digits of a number at most: with the 1 before them they fit into 64 bits.
+/// Maximum digits of a number: with the leading 1 they fit into 64 bits.
 const MOST_DIGITS: usize = 18;
 
 impl Texts {
@@ -210,7 +210,7 @@ impl Texts {
         let mut text = String::new();
         for letter in pattern.map_or("", String::as_str).chars() {
             match letter {
-                // The first digit is the 1 that keeps zeros.
+                // The first digit is the 1 that preserves leading zeros.
                 NUMBER => text.push_str(&unpacker.number().unwrap_or(1).to_string()[1..]),
                 letter => text.push(letter),
             }
@@ -246,7 +246,7 @@ impl Texts {
     }
 }
 
-/// The pattern of a text and its numbers, each with a 1 before its digits.
+/// Splits a text into its pattern and its numbers, each with a 1 before its digits.
 fn split(text: &str) -> (String, Vec<u64>) {
     let (mut pattern, mut numbers, mut rest) = (String::new(), Vec::new(), text);
     while let Some(letter) = rest.chars().next() {
@@ -267,12 +267,12 @@ fn split(text: &str) -> (String, Vec<u64>) {
     (pattern, numbers)
 }
 
-/// Everything that stands in the inbox.
+/// All notices of the inbox.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Inbox {
-    /// Days with notices, in their order.
+    /// Days with notices, in order.
     pub days: Arc<Vec<Arc<NoticeDay>>>,
-    /// Losses that repeat, in the order in which they began to.
+    /// Repeated losses, in the order of their start.
     pub losses: Arc<Vec<RepeatedLoss>>,
 }
 

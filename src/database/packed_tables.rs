@@ -1,4 +1,4 @@
-//! The tables `ledger` and `notifications`: what their columns read of packed days.
+//! The columns of the tables `ledger` and `notifications` over packed days.
 
 use std::borrow::Cow;
 use std::ffi::{CStr, c_int};

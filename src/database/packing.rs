@@ -1,21 +1,21 @@
-//! Packed days: numbers in as few bytes as they need, runs of ascending customers, and rows that stand at places of kinds.
+//! Packed days: variable-length numbers, runs of ascending customers, and rows at places with kinds.
 
-/// Rows of a run at most: whoever looks for one of them unpacks all.
+/// Maximum rows of a run, because reading one row unpacks all of them.
 pub(super) const LONGEST_RUN: usize = 1024;
 
-/// What the runs of one of the tables are: rows of ascending customer numbers.
+/// A run of a table: rows with ascending customer numbers.
 pub(super) trait Run: Sized {
-    /// What a row holds besides day and customer.
+    /// The columns of a row besides day and customer.
     type Row: Copy + Default + Send + Sync;
 
     fn customers(&self) -> &[u32];
     fn row(&self, at: usize) -> Self::Row;
     fn pack(&self, packer: &mut Packer);
-    /// None when the bytes are not those of a run.
+    /// Parses a run. Returns `None` if the bytes are invalid.
     fn unpack(unpacker: &mut Unpacker<'_>) -> Option<Self>;
 }
 
-/// A day of one of the tables, packed as it is in the file: rows would take a multiple of the memory.
+/// A packed day of a table, as in the file: unpacked rows would take a multiple of the memory.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PackedDay {
     pub day: u32,
@@ -23,11 +23,11 @@ pub(super) struct PackedDay {
     runs: Vec<RunPlace>,
 }
 
-/// Where a run is among the bytes of its day, and whom it may hold.
+/// Position of a run in the bytes of its day, and its range of customers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct RunPlace {
     begin: usize,
-    /// Rows of the day that stand before it.
+    /// Rows of the day before it.
     rows_before: usize,
     rows: usize,
     first_customer: u32,
@@ -35,7 +35,7 @@ struct RunPlace {
 }
 
 impl RunPlace {
-    /// Place of a run that begins at a byte, after these.
+    /// Returns the place of a run that starts at a byte, after earlier runs.
     fn after(before: &[RunPlace], run: &impl Run, begin: usize) -> RunPlace {
         let customers = run.customers();
         RunPlace {
@@ -61,7 +61,7 @@ impl PackedDay {
         PackedDay { day, bytes: packer.0, runs }
     }
 
-    /// A day as it was packed; none when the bytes are not those of a day.
+    /// Parses the bytes of a day. Returns `None` if they are invalid.
     pub fn read<R: Run>(day: u32, bytes: Vec<u8>) -> Option<PackedDay> {
         let mut unpacker = Unpacker(&bytes);
         let mut runs = Vec::new();
@@ -72,62 +72,61 @@ impl PackedDay {
         unpacker.0.is_empty().then_some(PackedDay { day, bytes, runs })
     }
 
-    /// As it stands in the file.
+    /// Returns the bytes in the file.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// Number of runs.
+    /// Returns the number of runs.
     pub fn len(&self) -> usize {
         self.runs.len()
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn rows(&self) -> usize {
         self.runs.last().map_or(0, |last| last.rows_before + last.rows)
     }
 
-    /// Number of a row of a run: rows are numbered in the order in which they stand.
+    /// Returns the number of a row: day and position in the day.
     pub fn row_number(&self, run: usize, at: usize) -> i64 {
         let before = self.runs.get(run).map_or(0, |place| place.rows_before);
         i64::from(self.day) << 32 | (before + at + 1) as i64
     }
 
-    /// First and last customer of a run; the first is greater where it is empty.
+    /// Returns first and last customer of a run; the first is greater if it is empty.
     pub fn customers(&self, run: usize) -> (u32, u32) {
         let place = &self.runs[run];
         (place.first_customer, place.last_customer)
     }
 
-    /// Whether a run may hold a customer with this number.
+    /// Returns whether a run may have a customer.
     pub fn may_hold(&self, run: usize, customer: f64) -> bool {
         let (first, last) = self.customers(run);
         (f64::from(first)..=f64::from(last)).contains(&customer)
     }
 
-    /// The rows of a run.
+    /// Unpacks a run.
     pub fn open<R: Run>(&self, run: usize) -> Option<R> {
         let place = self.runs.get(run)?;
         R::unpack(&mut Unpacker(&self.bytes[place.begin..]))
     }
 }
 
-/// Kinds as bits: those of a row's day that are asked for.
+/// A set of kinds as bits.
 pub(super) type Kinds = u32;
 
-/// A packed day: rows at places from 0, each of a kind.
+/// A packed day with rows at places from 0, each of a kind.
 pub(super) trait PackedRows {
-    /// The day.
     fn day(&self) -> u32;
-    /// Number of the first row; the others follow.
+    /// Returns the number of the first row.
     fn first(&self) -> u64;
-    /// Rows.
+    /// Returns the number of rows.
     fn len(&self) -> u64;
-    /// The first place from `place` on whose kind is among these.
+    /// Returns the first place from `place` on with one of the kinds.
     fn next_among(&self, kinds: Kinds, place: u64) -> Option<u64>;
 }
 
-/// Writes numbers of any size in as few bytes as they need.
+/// Writes variable-length numbers.
 #[derive(Default)]
 pub(super) struct Packer(Vec<u8>);
 
@@ -144,7 +143,7 @@ impl Packer {
         self.0.extend_from_slice(bytes);
     }
 
-    /// What was written.
+    /// Returns the bytes.
     pub fn finish(self) -> Vec<u8> {
         self.0
     }
@@ -153,7 +152,7 @@ impl Packer {
         self.0.extend_from_slice(&value.to_le_bytes());
     }
 
-    /// Ascending numbers as their differences.
+    /// Writes ascending numbers as differences.
     pub fn ascending(&mut self, values: &[u32]) {
         self.number(values.len() as u64);
         let mut before = 0;
@@ -164,7 +163,7 @@ impl Packer {
     }
 }
 
-/// Reads what a [`Packer`] wrote.
+/// Reads the output of a [`Packer`].
 pub(super) struct Unpacker<'a>(&'a [u8]);
 
 impl<'a> Unpacker<'a> {
@@ -172,7 +171,7 @@ impl<'a> Unpacker<'a> {
         Unpacker(bytes)
     }
 
-    /// What is left to read.
+    /// Returns the remaining bytes.
     pub fn rest(&self) -> &'a [u8] {
         self.0
     }

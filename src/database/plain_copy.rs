@@ -1,5 +1,4 @@
-//! A copy of the database for other programs: every visible table is an ordinary table or view in it, so any SQLite
-//! tool can read it without this program.
+//! A copy of the database for other programs: every visible table is an ordinary table or view, readable by any SQLite tool.
 
 use std::path::Path;
 use std::time::Duration;
@@ -16,7 +15,7 @@ use super::packing::PackedRows;
 use super::projector::{ProjectionError, Projector};
 use novamind_world::events::UsageRows;
 
-/// The tables that the program serves itself, as ordinary ones; of losses that repeat, only the days and the losses.
+/// Ordinary tables for the virtual ones. Repeated losses are a view over days and losses.
 const TABLES: &str = "CREATE TABLE daily_usage (day INTEGER NOT NULL, customer_id INTEGER NOT NULL, usage_units INTEGER NOT NULL);
 CREATE TABLE ads_revenue (day INTEGER NOT NULL, customer_id INTEGER NOT NULL, group_id TEXT NOT NULL,
     ads_strength REAL NOT NULL, revenue REAL NOT NULL);
@@ -32,7 +31,7 @@ SELECT notification_id, day, type, message FROM notice_rows
 UNION ALL
 SELECT first_number + number, day, 'lead_lost', message FROM repeating_days JOIN repeating_losses ON number < losses;";
 
-/// What questions about one customer need.
+/// Indexes for queries of one customer.
 const INDEXES: &str = "CREATE INDEX daily_usage_by_customer ON daily_usage (customer_id, day);
 CREATE INDEX ads_revenue_by_customer ON ads_revenue (customer_id, day);
 CREATE INDEX issues_by_customer ON issues (customer_id);
@@ -45,14 +44,13 @@ DROP TABLE ads_blocks;
 DROP TABLE notice_blocks;
 DROP TABLE repeated_losses;";
 
-/// Pages that are copied at a time.
 const PAGES: i32 = 4096;
 
 impl Projector {
-    /// Writes everything handed over so far into a new file that any SQLite tool can open.
+    /// Writes all entries received so far to a new file that any SQLite tool can open.
     ///
     /// # Errors
-    /// The database could not be written, or the file cannot be made.
+    /// The database could not be written, or the file cannot be created.
     pub fn copy_for_other_programs(&self, file: &Path) -> Result<(), ProjectionError> {
         self.wait()?;
         let store = self.store.read().unwrap_or_else(|poisoned| poisoned.into_inner()).clone();
@@ -61,10 +59,10 @@ impl Projector {
     }
 }
 
-/// The same of a finished database at a location.
+/// Writes a copy of the database at a location to a new file that any SQLite tool can open.
 ///
 /// # Errors
-/// There is none that can be read, or the file cannot be made.
+/// The database cannot be read, or the file cannot be created.
 pub fn copy_for_other_programs(location: &Location, file: &Path) -> Result<(), ProjectionError> {
     let told = |problem: String| ProjectionError(format!("{}: {problem}", file.display()));
     let source = location.open_reader().map_err(|error| told(error.to_string()))?;
@@ -75,7 +73,7 @@ pub fn copy_for_other_programs(location: &Location, file: &Path) -> Result<(), P
 fn copy(source: &Connection, store: &BlockStore, file: &Path) -> rusqlite::Result<()> {
     let mut copy = Connection::open(file)?;
     Backup::new(source, &mut copy)?.run_to_completion(PAGES, Duration::ZERO, None)?;
-    // One file without companions, and nothing to save it from: what is half written is thrown away.
+    // No journal: an incomplete copy is deleted.
     copy.pragma_update(None, "journal_mode", "OFF")?;
     copy.pragma_update(None, "synchronous", "OFF")?;
     let transaction = copy.transaction()?;
@@ -92,8 +90,8 @@ fn copy(source: &Connection, store: &BlockStore, file: &Path) -> rusqlite::Resul
     copy.pragma_update(None, "journal_mode", "DELETE")
 }
 
-/// Gives `subscriptions.effective_price` its type in the view. SQLite before 3.52 returns a whole number of a generated
-/// column as an integer where it sorts whole rows.
+/// Casts `subscriptions.effective_price` in the view. SQLite before 3.52 returns whole numbers of a generated column as
+/// integers when it sorts complete rows.
 fn type_prices(transaction: &Transaction<'_>) -> rusqlite::Result<()> {
     let of_view = "SELECT sql FROM sqlite_schema WHERE type = 'view' AND name = 'subscriptions'";
     let view: String = transaction.query_row(of_view, [], |row| row.get(0))?;

@@ -1,23 +1,21 @@
-//! Query plans for people: how a question is answered, without the names of what only the inside has.
+//! Query plans for users, without the names of internal tables.
 
 use super::answer::{Cell, text_at};
 use super::catalogue::{table, tables};
 use super::guard::visible_name;
 use super::tokens::tokens;
 
-/// The column of a plan with the number of the step that a step belongs to; the first column numbers it.
+/// Column of a plan with the number of the parent step; the first column is the number of the step.
 const PARENT: usize = 1;
 
-/// The column of a plan that is told in words.
 const DETAIL: usize = 3;
 
-/// What stands for a name that only the inside has.
+/// Replacement of internal names.
 const MASK: &str = "\u{2026}";
 
-/// Words of plans that are not written in capitals.
 const WORDS: [&str; 3] = ["rowid", "subquery", "join"];
 
-/// Masks the plan of a statement. How words are looked up inside is no step of the question: such steps are left out.
+/// Masks the plan of a statement. Removes the lookups of words, which are internal.
 pub(super) fn mask(plan: &mut Vec<Vec<Cell>>, sql: &str) {
     for row in plan.iter_mut() {
         if let Some(Cell::Text(detail)) = row.get_mut(DETAIL) {
@@ -36,15 +34,14 @@ pub(super) fn mask(plan: &mut Vec<Vec<Cell>>, sql: &str) {
     *plan = rest;
 }
 
-/// One line of a plan.
 fn masked(detail: &str, sql: &str) -> String {
-    // How a virtual table was asked is told in its own letters.
+    // The index text of a virtual table is internal.
     let detail = detail.split_once(" VIRTUAL TABLE INDEX").map_or(detail, |(before, _)| before);
     let mut text = String::new();
     for word in detail.split_inclusive(|letter: char| !is_of_word(letter)) {
         let name = word.trim_end_matches(|letter| !is_of_word(letter));
         let shown = if name.is_empty() { "" } else { shown(name, sql) };
-        // The name of an index says nothing: what it is asked for stands behind it.
+        // The name of an index is omitted: its columns follow.
         let is_index = shown == MASK && text.ends_with("INDEX ");
         text += if is_index { "" } else { shown };
         text += if is_index { word[name.len()..].trim_start() } else { &word[name.len()..] };
@@ -56,7 +53,7 @@ fn is_of_word(letter: char) -> bool {
     letter.is_alphanumeric() || letter == '_'
 }
 
-/// What is shown for a word of a plan.
+/// Returns the shown form of a word of a plan.
 fn shown<'a>(word: &'a str, sql: &str) -> &'a str {
     let language = word.chars().all(|letter| letter.is_ascii_uppercase() || letter.is_ascii_digit());
     let column = || {

@@ -1,4 +1,4 @@
-//! The writer thread: takes entries as they happen and commits them in one transaction per week or call.
+//! The writer thread: receives entries and commits them in one transaction per week or call.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -18,12 +18,12 @@ use super::rows::{Entry, LAYOUT, RowWriter, create};
 use novamind_world::events::Facts;
 use novamind_world::params::Params;
 
-/// Entries that may wait before the simulation has to; a bound on memory.
+/// Maximum queued entries, which limits memory. The simulation waits if the queue is full.
 const QUEUE: usize = 16;
-/// Facts that are kept for their memory after they were written: the days of a week.
+/// Maximum written facts whose memory is reused: the days of a week.
 const SPARE_FACTS: usize = 7;
 
-/// How far a database has come: the trajectory line it holds everything up to.
+/// Position of a database: the last trajectory line that it includes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Position {
     /// Number of the line.
@@ -33,13 +33,12 @@ pub struct Position {
 }
 
 impl Position {
-    /// Shows whether the position itself is whole.
     fn check(&self) -> String {
         blake3::hash(format!("{} {}", self.seq, self.line_hash).as_bytes()).to_hex()[..16].to_owned()
     }
 }
 
-/// Why the database could not be written. The run itself is safe: the trajectory holds everything.
+/// An error of writing the database. The run is safe, because the trajectory is complete.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ProjectionError(pub String);
 
@@ -55,7 +54,7 @@ impl fmt::Display for ProjectionError {
 
 impl std::error::Error for ProjectionError {}
 
-/// Something to do once everything handed over before is in the database.
+/// Work that runs after all earlier jobs.
 type Errand = Box<dyn FnOnce(&Connection) + Send>;
 
 enum Job {
@@ -76,7 +75,6 @@ pub struct Projector {
     failed: Failed,
 }
 
-/// What kept the database from being written, once something did.
 #[derive(Clone, Default)]
 struct Failed(Arc<Mutex<Option<ProjectionError>>>);
 
@@ -91,11 +89,11 @@ impl Failed {
 }
 
 impl Projector {
-    /// Starts a projector on a database. If there is one whose position `known` accepts, it is continued from
-    /// there; otherwise it is made anew, with the number of the run that owns it.
+    /// Starts a projector on a database. Continues an existing database if `known` accepts its position; otherwise creates a new one
+    /// with the id of its run.
     ///
     /// # Errors
-    /// The database can neither be read nor made.
+    /// The database can neither be read nor created.
     pub fn start(
         location: Location,
         owner: u32,
@@ -131,23 +129,23 @@ impl Projector {
         Ok((projector, position))
     }
 
-    /// Hands over an entry. Waits only when too many are waiting already.
+    /// Sends an entry. Blocks only if the queue is full.
     pub fn write(&self, entry: Entry) {
         self.send(Job::Write(Box::new(entry)));
     }
 
-    /// Empty facts with the memory of some that were written: a day that is filled into them needs no new memory.
+    /// Returns empty facts with reusable memory, if available.
     pub fn spare_facts(&self) -> Option<Arc<Facts>> {
         self.spare.take()
     }
 
-    /// Makes everything handed over so far visible, as of a trajectory position.
+    /// Commits all entries sent so far, with a trajectory position.
     pub fn commit(&self, position: Position) {
         self.send(Job::Commit(position));
     }
 
-    /// Does something on the writer's thread once everything committed so far is in the database. It is told the
-    /// digest of the database's file if `digest` asks for it; none in memory, or where the file cannot be read.
+    /// Runs `work` on the writer thread after all earlier commits. If `digest` is set, passes the digest of the database file;
+    /// `None` in memory, or if the file cannot be read.
     pub fn then(&self, digest: bool, work: impl FnOnce(Option<String>) + Send + 'static) {
         let path = self.location.path().filter(|_| digest).map(Path::to_owned);
         self.send(Job::Then(Box::new(move |connection| {
@@ -155,22 +153,22 @@ impl Projector {
         })));
     }
 
-    /// Waits until everything handed over so far is in the database.
+    /// Waits until everything sent so far is in the database.
     ///
     /// # Errors
-    /// What kept the database from being written.
+    /// The error of writing the database.
     pub fn wait(&self) -> Result<(), ProjectionError> {
         let (done, answer) = channel();
         self.send(Job::Wait(done));
         answer.recv().unwrap_or_else(|_| Err(ProjectionError("the writer has stopped".to_owned())))
     }
 
-    /// What kept the database from being written, as far as the writer has come.
+    /// Returns the error of writing the database, if one has occurred so far.
     pub fn failure(&self) -> Option<ProjectionError> {
         self.failed.get()
     }
 
-    /// A connection for guarded queries; any number of them may work at the same time as the writer.
+    /// Returns a connection for guarded queries. Several connections can run concurrently with the writer.
     ///
     /// # Errors
     /// The database cannot be opened for reading.
@@ -179,7 +177,7 @@ impl Projector {
         QueryConnection::open(&self.location, source, scope).map_err(told)
     }
 
-    /// Leaves the database this many pages beside those it has, as a full disk does.
+    /// Limits the database to a number of additional pages, which simulates a full disk.
     #[cfg(any(test, feature = "test-kit"))]
     pub fn bound_pages(&self, more: Option<u32>) {
         self.send(Job::Then(Box::new(move |connection| {
@@ -193,7 +191,7 @@ impl Projector {
 
     fn send(&self, job: Job) {
         if let Some(jobs) = &self.jobs {
-            // A writer that has stopped is noticed by the next wait.
+            // The next `wait` reports a stopped writer.
             let _ = jobs.send(job);
         }
     }
@@ -212,11 +210,11 @@ fn told(error: rusqlite::Error) -> ProjectionError {
     ProjectionError(error.to_string())
 }
 
-/// A database in memory is bounded by SQLite, not by a disk.
+/// Explains the size limit of SQLite for databases in memory.
 fn told_of_memory(error: rusqlite::Error) -> ProjectionError {
     match error.sqlite_error_code() {
         Some(rusqlite::ErrorCode::DiskFull) => ProjectionError(
-            "in memory it can have at most 1 GiB; a run that nobody else plays, in a writable folder, has it \
+            "in memory it can have at most 1 GiB; a run in a writable folder that no other program plays has it \
              on disk"
                 .to_owned(),
         ),
@@ -228,22 +226,22 @@ struct Worker<'a> {
     connection: &'a mut Connection,
     rows: RowWriter,
     gate: Arc<RwLock<()>>,
-    /// Whether readers see the state before a transaction while it is written, and do not wait for its end.
+    /// Whether readers continue with the previous state during a transaction.
     readers_go_on: bool,
     spare: Spare,
     failed: Failed,
-    /// The words for what goes wrong.
+    /// Conversion of errors.
     told: fn(rusqlite::Error) -> ProjectionError,
 }
 
-/// Emptied facts that are written and that nobody reads any more.
+/// Cleared facts that are no longer in use.
 #[derive(Clone, Default)]
 struct Spare(Arc<Mutex<Vec<Arc<Facts>>>>);
 
 impl Spare {
     fn give(&self, mut facts: Arc<Facts>) {
         let Some(unread) = Arc::get_mut(&mut facts) else { return };
-        // Not everybody who takes them begins a day: what is taken has to be as good as new.
+        // Not every user of the facts starts a day, so they must be completely cleared.
         unread.begin(0);
         let mut kept = self.kept();
         if kept.len() < SPARE_FACTS {
@@ -261,8 +259,8 @@ impl Spare {
 }
 
 impl Worker<'_> {
-    /// Works when a week or call is complete, not while it happens: the days have all processors until the player
-    /// reads what came of them, and readers of a database in memory wait for one short transaction at most.
+    /// Writes only when a week or call is complete, so that the simulation has all processors, and readers of a database in memory
+    /// wait for one short transaction at most.
     fn run(mut self, queue: &Receiver<Job>) {
         let mut pending: Vec<Entry> = Vec::new();
         loop {
@@ -273,14 +271,14 @@ impl Worker<'_> {
                 }
                 Job::Then(errand) => errand(self.connection),
                 Job::Commit(position) => self.try_to(|worker| worker.transact(&mut pending, &position)),
-                // After a failure nothing is written any more, so nothing is kept.
+                // After a failure nothing is written, so drop the entry.
                 Job::Write(entry) if self.failed.get().is_none() => pending.push(*entry),
                 Job::Write(_) => pending.clear(),
             }
         }
     }
 
-    /// Works unless something failed before: a database with a gap is worse than one that stops.
+    /// Runs work unless an earlier job failed: an incomplete database must not have gaps.
     fn try_to(&mut self, work: impl FnOnce(&mut Self) -> rusqlite::Result<()>) {
         if self.failed.get().is_none()
             && let Err(error) = work(self)
@@ -289,12 +287,11 @@ impl Worker<'_> {
         }
     }
 
-    /// One transaction: writes what is pending.
     fn transact(&mut self, pending: &mut Vec<Entry>, position: &Position) -> rusqlite::Result<()> {
         let gate = self.gate.clone();
         let close = || gate.write().unwrap_or_else(|poisoned| poisoned.into_inner());
-        // Where the first row keeps readers out, a reader that came through the gate would wait for the writer, and the
-        // writer before the gate for the reader.
+        // Without a write-ahead log, close the gate first: otherwise a reader that passed the gate would wait for the
+        // writer, and the writer at the gate for the reader.
         let early = (!self.readers_go_on).then(close);
         let transaction = self.connection.transaction()?;
         for entry in pending.drain(..) {
@@ -314,26 +311,26 @@ impl Worker<'_> {
     }
 }
 
-/// Whether what is written goes beside the database first, where readers of the state before are not kept out.
+/// Returns whether the database uses a write-ahead log, which does not block readers.
 fn has_log(connection: &Connection) -> bool {
     let journal = connection.query_row("PRAGMA journal_mode", [], |row| row.get::<_, String>(0));
     journal.is_ok_and(|journal| journal == "wal")
 }
 
-/// Digest of a database's file, with everything committed in it rather than beside it.
+/// Returns the digest of a database file after a checkpoint.
 fn settled_digest(connection: &Connection, path: &Path) -> Option<String> {
     let busy: i64 = connection.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |row| row.get(0)).ok()?;
     (busy == 0).then(|| file_digest(path)).flatten()
 }
 
-/// Digest of a file's bytes; none if it cannot be read.
+/// Returns the digest of a file's bytes, or `None` if it cannot be read.
 pub fn file_digest(path: &Path) -> Option<String> {
     let mut hasher = blake3::Hasher::new();
     hasher.update_reader(std::fs::File::open(path).ok()?).ok()?;
     Some(hasher.finalize().to_hex().to_string())
 }
 
-/// Opens a database that is there, whole, and at a known position; loads its blocks into the store.
+/// Opens an undamaged database at a known position and loads its blocks into the store.
 fn open_existing(
     location: &Location,
     store: &SharedStore,
@@ -352,10 +349,10 @@ fn open_existing(
     Some((connection, Some(position)))
 }
 
-/// A connection on a database as it stands, without a writer, and the position it stands at.
+/// Opens a connection to a database without a writer, and returns its position.
 ///
 /// # Errors
-/// There is none, or it is no database of a run.
+/// The database does not exist, or is not that of a run.
 pub fn query_connection(
     location: &Location,
     scope: Scope,
@@ -374,7 +371,7 @@ pub fn query_connection(
     Ok((connection, position))
 }
 
-/// Whether the database at a location is laid out as this version does it.
+/// Returns whether the database at a location has the layout of this version.
 pub fn has_layout_of_now(location: &Location) -> bool {
     location.open_reader().is_ok_and(|connection| is_laid_out_now(&connection))
 }
@@ -384,7 +381,7 @@ fn is_laid_out_now(connection: &Connection) -> bool {
     layout.is_ok_and(|layout| layout == LAYOUT)
 }
 
-/// Whether the structure of the database at a location is what it should be. Takes a while for a large one.
+/// Returns whether SQLite's quick check of the database at a location succeeds. Slow for large databases.
 pub fn is_consistent(location: &Location) -> bool {
     let check = |connection: Connection| {
         connection.query_row("PRAGMA quick_check(1)", [], |row| row.get::<_, String>(0))
@@ -392,13 +389,13 @@ pub fn is_consistent(location: &Location) -> bool {
     location.open_reader().and_then(check).is_ok_and(|answer| answer == "ok")
 }
 
-/// How far the database at a location has come; none where there is none that can be read.
+/// Returns the position of the database at a location, or `None` if it cannot be read.
 pub fn position_of(location: &Location) -> Option<Position> {
     location.path().filter(|path| path.exists())?;
     stored_position(&location.open_reader().ok()?).ok()?
 }
 
-/// Number of the run that owns the database at a location; none where nobody is named.
+/// Returns the number of the run that owns the database at a location, if any.
 pub fn owner_of(location: &Location) -> Option<u32> {
     location.path().filter(|path| path.exists())?;
     let connection = location.open_reader().ok()?;
@@ -410,7 +407,7 @@ fn stored_position(connection: &Connection) -> rusqlite::Result<Option<Position>
     connection
         .query_row("SELECT seq, line_hash, own_check FROM projection", [], |row| {
             let position = Position { seq: row.get::<_, i64>(0)? as u64, line_hash: row.get(1)? };
-            // A position that was damaged accuses the wrong file.
+            // Ignore a damaged position: the error would name the wrong file.
             let whole = row.get::<_, String>(2)? == position.check();
             Ok(whole.then_some(position))
         })
@@ -423,7 +420,7 @@ fn make_anew(location: &Location, owner: u32) -> rusqlite::Result<Connection> {
         for suffix in ["", "-wal", "-shm", "-journal"] {
             let mut file = path.as_os_str().to_owned();
             file.push(suffix);
-            // What is not there need not be removed; what cannot be removed shows when the tables are made.
+            // Ignore errors: a file that cannot be removed makes the creation of the tables fail.
             let _ = std::fs::remove_file(file);
         }
     }

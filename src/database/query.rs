@@ -1,9 +1,9 @@
 //! Guarded queries: one read-only statement over the 19 visible tables (docs/formats/database.md#queries).
 //!
-//! A statement is first compiled against the released schema (`released.rs`), where nothing hidden has a name. The
-//! connection that answers it can only read; an authorizer (`guard.rs`) allows the visible tables and ordinary
-//! functions; limits bound the size of statements, values and results; a progress handler stops what takes too long or
-//! too much memory. What is refused is decided by what a statement does, never by how its text looks.
+//! A statement is first compiled against the released schema (`released.rs`), which has no hidden names. The query connection
+//! is read-only. An authorizer (`guard.rs`) allows the visible tables and ordinary functions. Limits restrict the size of
+//! statements, values and results, and a progress handler interrupts queries that take too much time or memory. Rejections
+//! depend on what a statement does, not on its text.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -30,53 +30,52 @@ use super::plan;
 use super::released::{Reading, Released, without_explain};
 use super::tokens::tokens;
 
-/// Why a query was not answered.
+/// An error of a query.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct QueryError {
     /// Code for programs: `sql_empty`, `sql_schema`, `sql_hidden_table`, `sql_write`, `sql_timeout`, [`SQL_CANCELLED`],
     /// `sql_error`.
     pub code: &'static str,
-    /// What is wrong, with help where there is some.
+    /// Message with help.
     pub message: String,
-    /// Place in the statement in bytes, where it is known.
+    /// Byte offset in the statement, if it is known.
     pub position: Option<usize>,
 }
-/// Why a script was not run to its end.
+/// An error of a script.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ScriptError {
     /// Number of the statement, from 1.
     pub statement: usize,
-    /// What is wrong with it.
+    /// Error of the statement.
     pub error: QueryError,
 }
 
 /// Limits of a query.
 #[derive(Debug, Clone, Copy)]
 pub struct Limits {
-    /// Rows at most.
+    /// Maximum rows.
     pub rows: usize,
-    /// Time at most.
+    /// Maximum time.
     pub time: Duration,
-    /// Steps of SQLite's machine at most; none: only time and memory count.
+    /// Maximum steps of SQLite's virtual machine; `None` for no limit.
     pub steps: Option<u64>,
 }
 
-/// A result may hold this many bytes of text.
 const MOST_TEXT: usize = 64 << 20;
 
-/// A place to ask questions.
+/// A connection for guarded queries.
 pub struct QueryConnection {
     pub(super) released: Released,
     connection: Connection,
-    /// What statements may name.
+    /// Tables that statements may name.
     scope: Scope,
     objections: Objections,
     views: Option<InnerViews>,
-    /// Set while the program itself works on the connection.
+    /// Whether the authorizer is disabled for the program itself.
     trusted: Arc<AtomicBool>,
     pub(super) interrupt: Interrupt,
     source: BlockSource,
-    /// The blocks that the running query sees.
+    /// Blocks of the running query.
     seen: Arc<Seen>,
 }
 
@@ -100,7 +99,7 @@ impl QueryConnection {
         let guard = Guard::set_up(&connection, scope)?;
         connection.pragma_update(None, "query_only", true)?;
         limit(&connection)?;
-        // Virtual tables connect at their first use, which the authorizer would refuse.
+        // Virtual tables connect at their first use, which the authorizer would reject.
         for table in ["daily_usage", "ads_revenue", "issues", "ledger", "notifications"] {
             connection.prepare(&format!("SELECT 1 FROM {table}"))?;
         }
@@ -129,12 +128,12 @@ impl QueryConnection {
         })
     }
 
-    /// A handle that stops the queries of this connection.
+    /// Returns a handle that stops the queries of this connection.
     pub fn interrupt(&self) -> Interrupt {
         self.interrupt.clone()
     }
 
-    /// Answers one statement.
+    /// Runs one statement.
     ///
     /// # Errors
     /// The `sql_` codes.
@@ -142,7 +141,7 @@ impl QueryConnection {
         self.ask_as(self.interrupt.ticket(), sql, limits)
     }
 
-    /// Answers one statement under a ticket that was drawn when it was asked for.
+    /// Runs one statement with the ticket of its request.
     ///
     /// # Errors
     /// The `sql_` codes.
@@ -151,21 +150,21 @@ impl QueryConnection {
             return Err(refusal("sql_empty", "no SQL was given"));
         }
         if sql.contains('\0') {
-            // SQLite would read only what stands before it.
+            // SQLite would ignore the rest of the statement.
             return Err(refusal("sql_error", "the statement contains a NUL character"));
         }
         self.look(ticket, sql, limits)?;
         let answer = self.run(sql, limits).map_err(|fault| self.told(sql, fault, limits));
         let closed = self.look_away();
-        // What kept the statement from being answered tells more than what came of it.
+        // Report the error of the statement rather than a following one.
         answer.and_then(|rows| closed.map(|()| rows))
     }
 
-    /// Runs statements one after the other, each with the rows and time of `limits`, all of them in `time`
-    /// together; `answered` gets each result. They all see the same state.
+    /// Runs statements in order on the same state, each with the limits of `limits`, and all together within `time`. Calls
+    /// `answered` with each result.
     ///
     /// # Errors
-    /// The first statement that is refused; the ones before it were answered.
+    /// The first statement that fails; the results of earlier ones were passed.
     pub fn run_script(
         &self,
         sql: &str,
@@ -199,7 +198,7 @@ impl QueryConnection {
         done.and(closed)
     }
 
-    /// Fixes what the query sees: rows and blocks of the same commit, whatever is written meanwhile.
+    /// Starts a read transaction with rows and blocks of the same commit.
     fn look(&self, ticket: Ticket, sql: &str, limits: Limits) -> Result<(), QueryError> {
         self.objections.clear();
         self.released.objections().clear();
@@ -225,12 +224,11 @@ impl QueryConnection {
         Ok(())
     }
 
-    /// Whether blocks that a statement named were not as they were written: nothing it answers can be relied on.
+    /// Returns whether damaged blocks were found, so that results are not reliable.
     pub fn found_damage(&self) -> bool {
         matches!(&self.source, BlockSource::File(blocks) if blocks.borrow().is_damaged())
     }
 
-    /// Reads the blocks that a statement needs and that are not there yet.
     fn load_for(&self, reading: &Reading) -> Result<(), Fault> {
         let BlockSource::File(blocks) = &self.source else { return Ok(()) };
         let mut blocks = blocks.borrow_mut();
@@ -256,7 +254,7 @@ impl QueryConnection {
 
     fn look_away(&self) -> Result<(), QueryError> {
         self.seen.see(BlockStore::default());
-        // Where memory runs out, SQLite has ended the transaction by itself.
+        // If memory ran out, SQLite has already ended the transaction.
         if self.connection.is_autocommit() {
             return Ok(());
         }
@@ -288,7 +286,7 @@ impl QueryConnection {
         let copied = self
             .as_desk(&format!("SAVEPOINT copies; PRAGMA query_only = 0; {copies}; PRAGMA query_only = 1"));
         let answer = copied.map_err(Fault::Sqlite).and_then(|()| self.answer(reading, sql, limits));
-        // A copy that was stopped has taken the whole transaction with it.
+        // An interrupted copy has ended the whole transaction.
         let undo = match self.connection.is_autocommit() {
             true => "PRAGMA query_only = 1",
             false => "PRAGMA query_only = 1; ROLLBACK TO copies; RELEASE copies",
@@ -349,7 +347,7 @@ impl QueryConnection {
             }
             Fault::Write => write_refusal(),
             Fault::Damaged => {
-                refusal("sql_error", "world.db is damaged; it is made anew when the run is opened to play on")
+                refusal("sql_error", "world.db is damaged; open the run to play it, which rebuilds world.db")
             }
             Fault::TooLarge => {
                 let most = MOST_TEXT >> 20;
@@ -365,7 +363,7 @@ impl QueryConnection {
     fn told_by_sqlite(&self, sql: &str, error: &rusqlite::Error, limits: Limits) -> QueryError {
         use rusqlite::ErrorCode::{OperationInterrupted, OutOfMemory};
         if error.sqlite_error_code() == Some(OutOfMemory) {
-            // The machine has less than the limit allows.
+            // The machine has less memory than the limit.
             return refusal("sql_timeout", TOO_MUCH_MEMORY);
         }
         if error.sqlite_error_code() == Some(OperationInterrupted) {
@@ -400,7 +398,7 @@ impl QueryConnection {
     }
 }
 
-/// Whether a statement begins as one that changes something: what such a statement lacks is no help to anybody.
+/// Returns whether a statement starts like one that changes data. Help on its syntax would be useless.
 fn is_change(sql: &str) -> bool {
     const WORDS: [&str; 11] = [
         "INSERT", "REPLACE", "UPDATE", "DELETE", "CREATE", "DROP", "ALTER", "ATTACH", "DETACH", "REINDEX",
@@ -411,24 +409,24 @@ fn is_change(sql: &str) -> bool {
     first.is_some_and(|first| WORDS.iter().any(|word| first.is(word)))
 }
 
-/// What keeps a statement from being answered.
+/// Internal error of a statement.
 #[derive(Debug)]
 pub(super) enum Fault {
-    /// There is no statement.
+    /// No statement.
     Empty,
-    /// There is more than one.
+    /// More than one statement.
     Several,
-    /// It asks for the program of the engine's machine.
+    /// EXPLAIN without QUERY PLAN.
     MachineCode,
-    /// It has parameters.
+    /// Parameters.
     Parameters,
-    /// It changes something.
+    /// A change of data.
     Write,
-    /// What it reads is not as it was written.
+    /// Damaged blocks.
     Damaged,
-    /// It, or its result, is too large.
+    /// A statement or a result that is too large.
     TooLarge,
-    /// What the engine says.
+    /// An error of the engine.
     Sqlite(rusqlite::Error),
 }
 
@@ -440,10 +438,9 @@ impl From<rusqlite::Error> for Fault {
 
 const TOO_MUCH_MEMORY: &str = "the query needs too much memory; ask for less at a time";
 
-/// Code of a query that the user has stopped.
+/// Error code of a query that the user cancelled.
 pub const SQL_CANCELLED: &str = "sql_cancelled";
 
-/// Message of a query that the user has stopped.
 const CANCELLED: &str = "the query was cancelled";
 
 const SCHEMA_WORDS: &str =

@@ -1,9 +1,8 @@
-//! The tables as the released simulator declares them, empty and without anything beside them.
+//! The empty tables of the released simulator, without internal tables.
 //!
-//! Every statement is compiled against them before it is asked. What they refuse is refused in their words, which name
-//! nothing that only the inside has; the names of a result's columns are theirs. And a spelling that only ordinary
-//! tables understand (`rowid`, `main.ledger`) is replaced where they show that it makes no difference: both
-//! spellings must compile to the same program.
+//! Every statement is compiled against them first. Error messages and column names come from this compilation, so they never
+//! mention internal names. Spellings that only ordinary tables support (`rowid`, `main.ledger`) are replaced if both spellings
+//! compile to the same program.
 
 use std::collections::BTreeSet;
 
@@ -19,13 +18,11 @@ use super::mathematics::register_mathematics;
 use super::query::Fault;
 use super::tokens::{Token, tokens};
 
-/// Spellings that are tried for one statement at most.
 const MOST_ATTEMPTS: usize = 200;
 
-/// Names of the number of a row.
 const ROW_NUMBERS: [&str; 3] = ["rowid", "oid", "_rowid_"];
 
-/// The table in which customers are looked up and that has no index of them.
+/// The table with lookups by customer but without an index.
 const ISSUES: &str = "issues";
 
 /// The released schema.
@@ -35,29 +32,28 @@ pub(super) struct Released {
     reads: Reads,
 }
 
-/// A statement that the released schema takes.
+/// A statement that compiles against the released schema.
 #[derive(Debug)]
 pub(super) struct Reading {
-    /// As it is to be asked.
+    /// Text to run.
     pub sql: String,
-    /// Names of the columns of its result.
+    /// Names of the result columns.
     pub columns: Vec<String>,
-    /// Whether it asks how a question is answered, and not for the answer.
+    /// Whether it is an EXPLAIN QUERY PLAN.
     pub is_plan: bool,
-    /// The columns it reads of tables that are to be copied for it, with an index of their customers: all of them for
-    /// a RIGHT or FULL JOIN, because the engine cannot search a view there; `issues` where a query inside it looks for
-    /// a customer in them once for every row outside. A stored index of issues would slow every week down.
+    /// Columns of tables that are copied for it, with an index by customer. All tables for a RIGHT or FULL JOIN, because the
+    /// engine cannot search a view there. `issues` for a correlated subquery, because a stored index of issues would slow down
+    /// every week.
     pub copied: Columns,
-    /// The tables it names.
+    /// Tables that it names.
     pub tables: Vec<String>,
 }
 
-/// What a statement compiles to: the steps of its program. Names of columns are no part of it, but whatever is found by
-/// them is.
+/// The compiled program of a statement. It depends on the resolved columns, but not on their names.
 type Program = Vec<Vec<Value>>;
 
 impl Released {
-    /// Declares the tables in memory; the hidden ones beside them where statements may name them.
+    /// Creates the tables in memory, with the hidden ones if statements may name them.
     pub fn open(scope: Scope) -> rusqlite::Result<Released> {
         let mut connection = Connection::open_in_memory()?;
         if scope == Scope::Hidden {
@@ -76,12 +72,12 @@ impl Released {
         Ok(Released { connection, objections, reads })
     }
 
-    /// What was objected to last.
+    /// Returns the rejection reasons.
     pub fn objections(&self) -> &Objections {
         &self.objections
     }
 
-    /// The statements of a text, each compiled when it is its turn.
+    /// Returns the statements of a text, compiled one by one.
     pub fn statements<'a>(&'a self, sql: &'a str) -> Statements<'a> {
         Statements { released: self, batch: Batch::new(&self.connection, sql) }
     }
@@ -112,16 +108,15 @@ impl Released {
         Ok(Reading { sql: self.respelled(sql), columns, is_plan, copied, tables })
     }
 
-    /// Whether a query inside the statement is asked again for every row outside.
+    /// Returns whether the statement has a correlated subquery.
     fn asks_for_every_row(&self, sql: &str) -> bool {
         let plan = self.steps(&format!("EXPLAIN QUERY PLAN {}", without_explain(sql))).unwrap_or_default();
-        // The engine turns some EXISTS into joins, and says so behind the table.
+        // The engine converts some EXISTS to joins and marks the table.
         let again = |step: &str| step.starts_with("CORRELATED") || step.contains(" EXISTS");
         plan.iter().flatten().any(|cell| matches!(cell, Value::Text(step) if again(step)))
     }
 
-    /// The statement in a spelling that does without `main.` and the numbers of rows, as far as that makes no
-    /// difference.
+    /// Replaces `main.` and rowids in a statement, where that does not change the program.
     fn respelled(&self, sql: String) -> String {
         let own = tokens(&sql);
         let places: Vec<StatementPlace> =
@@ -130,7 +125,7 @@ impl Released {
         let qualifiers = qualifiers(&own);
         let mut spelled = sql.clone();
         let mut attempts = 0;
-        // From the end, so that the places before stay where they are.
+        // From the end, so that earlier offsets stay valid.
         for place in places.iter().rev() {
             for other in place.spellings(&qualifiers) {
                 attempts += 1;
@@ -147,12 +142,11 @@ impl Released {
         spelled
     }
 
-    /// What a statement compiles to; none if it does not.
+    /// Compiles a statement. Returns `None` if it does not compile.
     fn program(&self, sql: &str) -> Option<Program> {
         self.steps(&format!("EXPLAIN {}", without_explain(sql)))
     }
 
-    /// The rows of an explanation.
     fn steps(&self, explanation: &str) -> Option<Program> {
         let mut statement = self.connection.prepare(explanation).ok()?;
         let width = statement.column_count();
@@ -162,14 +156,14 @@ impl Released {
     }
 }
 
-/// The statements of a text, one after the other.
+/// Iterator over the statements of a text.
 pub(super) struct Statements<'a> {
     released: &'a Released,
     batch: Batch<'a, 'a>,
 }
 
 impl Statements<'_> {
-    /// The next statement; none after the last one.
+    /// Returns the next statement, or `None` after the last one.
     pub fn next(&mut self) -> Result<Option<Reading>, Fault> {
         self.released.reads.take();
         match self.batch.next()? {
@@ -179,11 +173,10 @@ impl Statements<'_> {
     }
 }
 
-/// A place in a statement that ordinary tables understand and views do not.
+/// A place in a statement that only ordinary tables support.
 struct StatementPlace {
     begin: usize,
     end: usize,
-    /// The number of a row, with no table before it; otherwise `main.`, or one with a table.
     kind: PlaceKind,
 }
 
@@ -215,7 +208,7 @@ impl StatementPlace {
         })
     }
 
-    /// What may stand there instead, the likeliest first.
+    /// Returns possible replacements, most likely first.
     fn spellings(&self, qualifiers: &[&str]) -> Vec<String> {
         let keys = || tables().iter().filter_map(Table::row_number);
         match self.kind {
@@ -230,7 +223,7 @@ impl StatementPlace {
     }
 }
 
-/// Words of a statement that may stand before a column: what follows a table's name, and the name itself.
+/// Returns possible qualifiers of columns: table names and the words after them.
 fn qualifiers<'a>(tokens: &[Token<'a>]) -> Vec<&'a str> {
     let mut found: Vec<&str> = Vec::new();
     for (at, token) in tokens.iter().enumerate() {
@@ -245,7 +238,7 @@ fn qualifiers<'a>(tokens: &[Token<'a>]) -> Vec<&'a str> {
     found
 }
 
-/// Whether a statement has a RIGHT or FULL JOIN.
+/// Returns whether a statement has a RIGHT or FULL JOIN.
 fn joins_from_the_right(sql: &str) -> bool {
     let own = tokens(sql);
     own.windows(2).any(|pair| {
@@ -253,7 +246,7 @@ fn joins_from_the_right(sql: &str) -> bool {
     })
 }
 
-/// A statement without a leading `EXPLAIN QUERY PLAN`.
+/// Returns a statement without a leading `EXPLAIN QUERY PLAN`.
 pub(super) fn without_explain(sql: &str) -> &str {
     let own = tokens(sql);
     let head = ["EXPLAIN", "QUERY", "PLAN"];

@@ -2,9 +2,9 @@
 -- opens in any SQLite tool; large tables that are read far more than changed
 -- (daily_usage, ads_revenue, issues, ledger, notifications) are packed by day and served by the program.
 --
--- What follows from a row alone is a generated column of it: it takes no room, has its declared type, and the engine can
--- join by it. It is worked out for every row that is written, so a costly one that nobody joins by is worked out where it
--- is read, as is what needs another table; CAST gives those their type: without one, numbers and texts are never equal.
+-- Values that depend on one row only are generated columns: they take no space, have their declared type, and the engine can
+-- join by them. They are computed for every written row, so expensive ones without joins are computed in views, like values
+-- that need another table. There CAST gives them their type: without a type, numbers and texts are never equal.
 
 CREATE TABLE projection (
     id INTEGER PRIMARY KEY CHECK (id = 1),
@@ -96,7 +96,7 @@ SELECT
     acquisition_source
 FROM customer_rows customers;
 
--- Nobody has two subscriptions, so the customer is the key; state: 0 lead, 1 subscribed, 2 cancelled, 3 lost.
+-- A customer has at most one subscription, so the customer is the key; state: 0 lead, 1 subscribed, 2 cancelled, 3 lost.
 CREATE TABLE subscription_rows (
     customer_id INTEGER PRIMARY KEY,
     subscription_id INTEGER NOT NULL,
@@ -134,7 +134,7 @@ SELECT
     billed_once AS first_billing_done
 FROM subscription_rows;
 
--- Days of the ledger and of issues by their opening, packed; what the clock by which issues age showed after each day.
+-- Packed days of the ledger and of issues by opening day; the clock of issue ages after each day.
 CREATE TABLE ledger_blocks (day INTEGER PRIMARY KEY, packed BLOB NOT NULL);
 CREATE TABLE issue_blocks (day INTEGER PRIMARY KEY, packed BLOB NOT NULL);
 CREATE TABLE issue_clock (day INTEGER PRIMARY KEY, aged INTEGER NOT NULL);
@@ -224,7 +224,7 @@ CREATE TABLE enterprise_turns (
 CREATE INDEX enterprise_turns_by_thread ON enterprise_turns (thread_id);
 CREATE INDEX enterprise_turns_by_customer ON enterprise_turns (customer_id);
 
--- Days of notifications, packed, without the losses that repeat every day from a day on; their number is their place.
+-- Packed days of notifications without the repeated losses, whose number is their position.
 CREATE TABLE notice_blocks (day INTEGER PRIMARY KEY, packed BLOB NOT NULL);
 CREATE TABLE repeated_losses (
     number INTEGER PRIMARY KEY,
@@ -277,12 +277,12 @@ CREATE TABLE segment_discovery (
     discovered_group_id TEXT
 );
 
--- Days of daily_usage and ads_revenue, packed.
+-- Packed days of daily_usage and ads_revenue.
 CREATE TABLE usage_blocks (day INTEGER PRIMARY KEY, packed BLOB NOT NULL);
 CREATE TABLE ads_blocks (day INTEGER PRIMARY KEY, packed BLOB NOT NULL);
 
--- What the engine is to expect of a large company: how many rows a table has, and how many of them an index finds. A small
--- company is answered at once in any way.
+-- Statistics of a large company for the query planner: rows of a table, and rows per index value. Queries of a small company
+-- are fast with any plan.
 ANALYZE;
 INSERT INTO sqlite_stat1 (tbl, idx, stat) VALUES
     ('words', 'words', '1500 150 6 1'),

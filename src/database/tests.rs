@@ -1,4 +1,4 @@
-//! A company of a few weeks, projected and asked.
+//! Tests that project and query a company of a few weeks.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -40,7 +40,7 @@ fn position(seq: u64) -> Position {
     Position { seq, line_hash: format!("hash {seq}") }
 }
 
-/// Simulates days of policy P and projects them, a week per commit.
+/// Simulates days of policy P and projects them with one commit per week.
 struct Company {
     world: World,
     params: Arc<Params>,
@@ -199,7 +199,7 @@ fn open_issues_agree_with_the_world() {
     let mut expected: Vec<Vec<Cell>> = Vec::new();
     for (_, block) in company.world.customers.blocks() {
         for at in (0..block.len()).filter(|at| block.open_issue_days[*at] > 0) {
-            // An issue is a day old when it is opened, but has not aged yet.
+            // On the opening day, the counter of the simulator is 1 and the age in the table is 0.
             let aged = i64::from(block.open_issue_days[at]) - 1;
             expected.push(vec![Cell::Integer(i64::from(block.customer[at])), Cell::Integer(aged)]);
         }
@@ -212,7 +212,7 @@ fn open_issues_agree_with_the_world() {
     assert!(!expected.is_empty() && (found.rows == expected || found.truncated));
     let wrong =
         "SELECT count(*) FROM issues WHERE status = 'resolved' AND days_open <> resolved_day - open_day - 1";
-    // Ageing is skipped on days on which nobody active had an open issue; policy P has none of those after a month.
+    // Issues do not age on days without open issues of active customers; policy P has no such days after a month.
     assert_eq!(one(&connection, &format!("{wrong} AND open_day > 30")), 0.0);
 }
 
@@ -288,7 +288,7 @@ fn what_is_hidden_cannot_be_asked() {
     let mut company = Company::open(Location::memory());
     let connection = company.weeks(2);
     for (sql, code) in [
-        // The obvious attempts, then what people try next.
+        // Obvious attempts first, then advanced ones.
         ("", "sql_empty"),
         ("  ", "sql_empty"),
         ("SELECT 1\0; SELECT 2", "sql_error"),
@@ -637,7 +637,7 @@ fn days_of_a_file_are_read_when_their_table_is_named_and_have_to_be_whole() {
     assert_eq!(damaged, Ok(1));
     assert_eq!(rows(&reader, ledger), before[1], "other tables still answer");
     assert!(!reader.found_damage());
-    let refused = reader.ask(usage, LIMITS).expect_err("what was read before is not what the file holds now");
+    let refused = reader.ask(usage, LIMITS).expect_err("the file has changed since it was read");
     assert!(refused.message.starts_with("world.db is damaged") && reader.found_damage(), "{refused:?}");
     for sql in
         ["SELECT 1 WHERE EXISTS (SELECT 1 FROM daily_usage)", "SELECT (SELECT count(*) FROM daily_usage)"]
@@ -670,7 +670,7 @@ fn a_database_is_continued_where_it_stands_or_made_anew() {
     drop(projector);
     std::fs::write(folder.path().join("world.db"), b"not a database at all, but long enough to look")
         .expect("a file");
-    let (projector, found) = Projector::start(location, 1, params, |_| true).expect("it is made anew");
+    let (projector, found) = Projector::start(location, 1, params, |_| true).expect("it is rebuilt");
     assert_eq!(found, None);
     drop(projector);
 }
@@ -698,7 +698,7 @@ fn a_reader_and_the_writer_never_wait_for_each_other() {
     let connection = company.projector.connection(Scope::Visible).expect("a connection");
     let over = Arc::new(AtomicBool::new(false));
     let is_over = over.clone();
-    // Without pause, so that it comes between the first row of a transaction and its end.
+    // Without a pause, so that queries run during transactions.
     let reader = std::thread::spawn(move || {
         while !is_over.load(Ordering::Relaxed) {
             let answer = connection.ask("SELECT count(*) FROM ledger", LIMITS);

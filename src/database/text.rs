@@ -1,10 +1,10 @@
-//! Results as text.
+//! Formatting of results as text.
 
 use unicode_width::UnicodeWidthStr;
 
 use super::answer::{Cell, Rows};
 
-/// A value of a result as text.
+/// Formats a value of a result.
 pub fn cell_text(cell: &Cell) -> String {
     match cell {
         Cell::Null => "NULL".to_owned(),
@@ -14,7 +14,7 @@ pub fn cell_text(cell: &Cell) -> String {
     }
 }
 
-/// A result as aligned columns under their names, with the count of rows, warning and hint.
+/// Formats a result as aligned columns with names, row count, warning and hint.
 pub fn table(rows: &Rows) -> String {
     let mut text = columns(rows);
     text += &match (rows.rows.len(), rows.truncated) {
@@ -31,7 +31,7 @@ pub fn table(rows: &Rows) -> String {
     text
 }
 
-/// A result as aligned columns under their names.
+/// Formats a result as aligned columns with names.
 pub fn columns(rows: &Rows) -> String {
     let cells: Vec<Vec<String>> = rows
         .rows
@@ -41,7 +41,7 @@ pub fn columns(rows: &Rows) -> String {
     aligned(&rows.columns, &cells)
 }
 
-/// Rows of text as aligned columns under their names.
+/// Formats rows of text as aligned columns with names.
 pub fn aligned(columns: &[String], rows: &[Vec<String>]) -> String {
     let width = |at: usize| {
         let cells = rows.iter().filter_map(|row| row.get(at)).chain([&columns[at]]);

@@ -1,14 +1,13 @@
-//! The words of a statement, as the engine reads them: names, texts and signs, with their places.
+//! Tokens of a statement: names, texts and signs with their positions, as in the engine.
 
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// What a token is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum TokenKind {
-    /// A name, or a word of the language.
+    /// A name or a keyword.
     Name,
-    /// A name in double quotes, brackets or backquotes; in double quotes a text, where no name is meant.
+    /// A name in double quotes, brackets or backquotes, or a text in double quotes.
     Quoted,
     /// A text in single quotes.
     Text,
@@ -21,21 +20,21 @@ pub(super) enum TokenKind {
 /// A token of a statement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Token<'a> {
-    /// What it is.
+    /// Kind.
     pub kind: TokenKind,
-    /// As it is written.
+    /// Source text.
     pub written: &'a str,
-    /// Where it begins, in bytes.
+    /// Byte offset.
     pub at: usize,
 }
 
 impl<'a> Token<'a> {
-    /// Where it stands, in bytes.
+    /// Returns its byte range.
     pub fn place(&self) -> Range<usize> {
         self.at..self.at + self.written.len()
     }
 
-    /// What it means without its quotes.
+    /// Returns its content without quotes.
     pub fn content(&self) -> Cow<'a, str> {
         let quote = match (self.kind, self.written.chars().next()) {
             (TokenKind::Quoted | TokenKind::Text, Some('[')) => ']',
@@ -50,23 +49,23 @@ impl<'a> Token<'a> {
         }
     }
 
-    /// Whether it is this word of the language or this name; case does not count.
+    /// Returns whether it is this keyword or name; case-insensitive.
     pub fn is(&self, word: &str) -> bool {
         self.kind == TokenKind::Name && self.written.eq_ignore_ascii_case(word)
     }
 
-    /// Whether it is this sign.
+    /// Returns whether it is this sign.
     pub fn is_sign(&self, sign: &str) -> bool {
         self.kind == TokenKind::Sign && self.written == sign
     }
 
-    /// Whether it may name something: a name, quoted or not.
+    /// Returns whether it is a name, quoted or not.
     pub fn may_name(&self) -> bool {
         matches!(self.kind, TokenKind::Name | TokenKind::Quoted | TokenKind::Text)
     }
 }
 
-/// All tokens of a statement, without blanks and comments. What does not end goes on to the end of the text.
+/// Returns all tokens of a statement, without spaces and comments. An unterminated token extends to the end of the text.
 pub(super) fn tokens(sql: &str) -> Vec<Token<'_>> {
     let mut found = Vec::new();
     let mut at = 0;
@@ -78,7 +77,7 @@ pub(super) fn tokens(sql: &str) -> Vec<Token<'_>> {
     found
 }
 
-/// Kind and length of what a text begins with; blanks and comments have no kind.
+/// Returns kind and length of the first token; spaces and comments have no kind.
 fn next(rest: &str) -> (Option<TokenKind>, usize) {
     let until = |end: &str, from: usize| rest[from..].find(end).map(|at| from + at + end.len());
     let first = rest.chars().next().unwrap_or(' ');
@@ -107,7 +106,7 @@ fn word_length(rest: &str) -> usize {
     rest.find(outside).unwrap_or(rest.len())
 }
 
-/// Length of a quoted text at the beginning; a doubled quote does not end it.
+/// Returns the length of a leading quoted text; a doubled quote does not end it.
 fn quoted(rest: &str, quote: char) -> usize {
     let mut letters = rest.char_indices().skip(1).peekable();
     while let Some((at, letter)) = letters.next() {

@@ -1,23 +1,23 @@
-//! What the record of a run says about questions of a study: which were answered, and how often the person came back.
+//! Answered questions of a study, read from the record of a run, and the number of breaks.
 
 use std::collections::BTreeSet;
 
 use crate::trajectory::record::{Activity, Answered, ClockEvent, PresenceEvent};
 use crate::trajectory::{Line, Record};
 
-/// What the record of a run says about questions.
+/// The questions of a study that a run has answered.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct AnswerBook {
     /// Questionnaire, occasion and question of each answer.
     given: BTreeSet<(String, String, String)>,
-    /// How often the person took up the run again, or started the clock again.
+    /// Number of times the participant reopened the run or restarted the clock.
     pub breaks: u32,
-    /// The run was taken up before.
+    /// Whether an `opened` line was read before.
     opened: bool,
 }
 
 impl AnswerBook {
-    /// What lines say, in their order.
+    /// Reads the answers and breaks from the lines of a run, in order.
     pub fn of<'a>(lines: impl IntoIterator<Item = &'a Line>) -> AnswerBook {
         let mut book = AnswerBook::default();
         for line in lines {
@@ -28,7 +28,7 @@ impl AnswerBook {
         book
     }
 
-    /// Takes note of what a person did.
+    /// Updates the answers and breaks with one activity.
     pub fn note(&mut self, activity: &Activity) {
         match activity {
             Activity::Answer(answer) => {
@@ -44,7 +44,7 @@ impl AnswerBook {
         }
     }
 
-    /// Whether a question of a questionnaire was answered on an occasion.
+    /// Returns whether a question of a questionnaire was answered on an occasion.
     pub fn has(&self, questionnaire: &str, occasion: &str, question: &str) -> bool {
         let place = (questionnaire.to_owned(), occasion.to_owned(), question.to_owned());
         self.given.contains(&place)

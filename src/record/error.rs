@@ -1,4 +1,4 @@
-//! What can go wrong with a run as a whole: which file, which line, what is safe, what to do next.
+//! Errors that concern a whole run. Messages name the file and line, the data that is safe, and the next step.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use crate::consent::ConsentText;
 use novamind_database::ProjectionError;
 use novamind_world::params::ParameterError;
 
-/// Why a run cannot be created, opened or read.
+/// An error of creating, opening or reading a run.
 #[derive(Debug, Error)]
 pub enum RunError {
     /// A file cannot be read or written.
@@ -17,64 +17,64 @@ pub enum RunError {
     Io {
         /// File or folder.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         error: std::io::Error,
     },
-    /// A file of a run is not what was written.
+    /// A file of a run was changed after it was written.
     #[error("{path}, line {line}: {problem}. {safe}", path = .path.display())]
     Damaged {
-        /// File.
+        /// Path of the file.
         path: PathBuf,
-        /// Line, from 1.
+        /// Line number, from 1.
         line: usize,
-        /// What is wrong.
+        /// The defect.
         problem: String,
-        /// What is still good, and what can be done.
+        /// The data that is still valid, and the next step.
         safe: String,
     },
-    /// A manifest or configuration is wrong.
+    /// A manifest or configuration is invalid.
     #[error("{0}")]
     Configuration(#[from] ParameterError),
-    /// The run was recorded with other parameters than this program has.
+    /// The run was recorded with parameters that differ from those of this program.
     #[error(
         "run {id} was recorded by version {version} with parameters {recorded}, but this program has {own}. \
          Nothing was changed; open the run with that version"
     )]
     OtherParameters {
-        /// Run.
+        /// Id of the run.
         id: String,
-        /// Version that recorded it.
+        /// Version that recorded the run.
         version: String,
         /// Digest in the manifest.
         recorded: String,
-        /// Digest of the parameters as this program reads them.
+        /// Digest of the parameters as loaded by this program.
         own: String,
     },
-    /// The run was played by other mechanics than this program has.
+    /// The run was recorded with mechanics that differ from those of this program.
     #[error(
         "run {id} was recorded by version {version} with mechanics {recorded}, but this program has \
          mechanics {own}. Nothing was changed; open the run with that version"
     )]
     OtherMechanics {
-        /// Run.
+        /// Id of the run.
         id: String,
-        /// Version that recorded it.
+        /// Version that recorded the run.
         version: String,
-        /// Number in the manifest.
+        /// Mechanics number in the manifest.
         recorded: u32,
-        /// Number of this program.
+        /// Mechanics number of this program.
         own: u32,
     },
-    /// The person has to agree to a text first.
+    /// The participant has to agree to the consent text first.
     #[error("{}", .0.explained())]
     ConsentNeeded(ConsentText),
-    /// The run was written in a format this program does not know.
+    /// The run has a format that this program cannot read.
     #[error(
         "run {id} has format {format}, but this program reads format {known}. Nothing was changed; use a \
          newer version"
     )]
     OtherFormat {
-        /// Run.
+        /// Id of the run.
         id: String,
         /// Format in the manifest.
         format: u32,
@@ -86,82 +86,82 @@ pub enum RunError {
         "run {id} is open in another program ({holder}); close it there, or watch it from here: `novamind play --run {id} --watch`"
     )]
     InUse {
-        /// Run.
+        /// Id of the run.
         id: String,
-        /// Who holds it.
+        /// Process that holds the lock.
         holder: String,
     },
-    /// The file of a run that is played is not the one it was.
+    /// The trajectory was moved, removed, linked or changed while the run was open.
     #[error(
         "your decisions are no longer on disk: {path} was moved, removed or linked, or another program has written to it. \
-         Nothing more is saved. {}", kept_words(.kept), path = .path.display()
+        Nothing more will be saved. {}", kept_words(.kept), path = .path.display()
     )]
     Astray {
-        /// The trajectory.
+        /// Path of the trajectory.
         path: PathBuf,
-        /// The file that everything was written to, or why it could not be.
+        /// The file to which all confirmed lines were copied, or the error of copying them.
         kept: Result<PathBuf, String>,
     },
-    /// The program failed while it closed a run.
+    /// The program panicked while it closed a run.
     #[error("the program has a defect and failed while it closed run {run}. {}", safe_words(run, folder.as_deref()))]
     Defect {
-        /// Run.
+        /// Id of the run.
         run: String,
-        /// Its folder; `None` in memory.
+        /// Folder of the run; `None` for a run in memory.
         folder: Option<PathBuf>,
     },
-    /// The folder of a run takes no changes.
+    /// The folder of a run is not writable.
     #[error(
-        "run {id} cannot be written ({error}): its folder {folder} is on read-only media or belongs to somebody else; \
-         open it read-only with `novamind play --run {id} --watch`, or copy it to a place of your own",
+        "run {id} cannot be written ({error}): its folder {folder} is on read-only media or belongs to another user; \
+        open it read-only with `novamind play --run {id} --watch`, or copy it to a folder that you can write",
         folder = .folder.display()
     )]
     NotWritable {
-        /// Run.
+        /// Id of the run.
         id: String,
-        /// Its folder.
+        /// Folder of the run.
         folder: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         error: std::io::Error,
     },
-    /// There is no such run.
+    /// The run does not exist.
     #[error("there is no run {id} in {folder}; `novamind runs` lists the runs", folder = .folder.display())]
     NotFound {
-        /// What was asked for.
+        /// Requested id.
         id: String,
-        /// Where it was looked for.
+        /// Folder that was searched.
         folder: PathBuf,
     },
-    /// A file is no archive of a run, or not the one that was sealed.
+    /// A file is not an archive of a run, or was changed after it was sealed.
     #[error("{path}: {problem}. {safe}", path = .path.display())]
     Archive {
-        /// The archive.
+        /// Path of the archive.
         path: PathBuf,
-        /// What is wrong with it; names the file inside.
+        /// The defect, with the name of the file inside the archive.
         problem: String,
-        /// What is still good, and what can be done.
+        /// The data that is still valid, and the next step.
         safe: String,
     },
-    /// Something would be overwritten.
+    /// A file or run would be overwritten.
     #[error("{0}")]
     Exists(String),
-    /// There is no such scenario.
+    /// The scenario does not exist.
     #[error("there is no scenario {name}; the scenarios are {known}")]
     NoScenario {
-        /// What was asked for.
+        /// Requested name.
         name: String,
-        /// Those there are.
+        /// Existing names, separated by commas.
         known: String,
     },
-    /// There is no such lesson.
+    /// The lesson does not exist.
     #[error("there is no lesson {name}; the lessons are {known}")]
     NoLesson {
-        /// What was asked for.
+        /// Requested name.
         name: String,
-        /// Those there are.
+        /// Existing names, separated by commas.
         known: String,
     },
-    /// The run cannot be started as asked.
+    /// The run cannot be started with these options.
     #[error("{0}")]
     NotPossible(String),
     /// The database cannot be written.
@@ -169,30 +169,30 @@ pub enum RunError {
     Projection(#[from] ProjectionError),
 }
 
-/// Where everything is that was confirmed, and what to do.
+/// Returns where the confirmed lines are, and the next step.
 fn kept_words(kept: &Result<PathBuf, String>) -> String {
     match kept {
         Ok(file) => format!(
-            "Everything confirmed so far is in {}. Leave. If trajectory.jsonl is gone, give this file its name and open the \
-             run again; if it is there, keep both files and tell whoever runs the session",
+            "Everything confirmed so far is in {}. Leave the program. If trajectory.jsonl is gone, rename this file to it and open \
+            the run again; if it exists, keep both files and inform the experimenter",
             file.display()
         ),
         Err(problem) if problem.is_empty() => {
-            "Leave, and look for the file before you open the run again".to_owned()
+            "Leave the program, and look for the file before you open the run again".to_owned()
         }
         Err(problem) => format!(
-            "It could not be written beside its place either ({problem}). Leave, and look for the file before you open the \
-             run again"
+            "A copy could not be written either ({problem}). Leave the program, and look for the file before you open the \
+            run again"
         ),
     }
 }
 
-/// What is safe after a defect, and what to do.
+/// Returns what is safe after a defect, and the next step.
 fn safe_words(run: &str, folder: Option<&Path>) -> String {
     match folder {
         Some(folder) => format!(
-            "Everything that was confirmed is in {}. Open the run again with `novamind play --run {run}`: whatever else was not \
-             saved is rebuilt from that file",
+            "Everything that was confirmed is in {}. Open the run again with `novamind play --run {run}`: the program rebuilds \
+            the other files from that file",
             folder.join("trajectory.jsonl").display()
         ),
         None => "It was only in memory and is gone".to_owned(),
@@ -200,7 +200,7 @@ fn safe_words(run: &str, folder: Option<&Path>) -> String {
 }
 
 impl RunError {
-    /// An error of the system at a path.
+    /// Returns a function that adds a path to an error of the operating system.
     pub fn io(path: &Path) -> impl FnOnce(std::io::Error) -> RunError + '_ {
         move |error| RunError::Io { path: path.to_owned(), error }
     }

@@ -1,6 +1,6 @@
-//! Files and folders that survive a power cut: a file is on the disk only when its directory entry is, too.
+//! File operations that survive a power cut: a file is on the disk only if its directory entry is, too.
 //!
-//! Regular files are opened by functions of their own: a pipe in the place of a file would block the program.
+//! Separate functions open regular files only: opening a pipe in place of a file would block the program.
 
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -8,10 +8,10 @@ use std::path::Path;
 
 use crate::error::RunError;
 
-/// Writes a file so that after a crash it is the old one or the new one, never a part of it.
+/// Replaces a file atomically: after a crash it has the old or the new content.
 ///
 /// # Errors
-/// The disk refuses it. The old file is kept, unless only the sync of the folder failed.
+/// The file cannot be written. The old file is kept, unless only the sync of the folder failed.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     let draft = path.with_extension("draft");
     let written = File::create(&draft)
@@ -27,7 +27,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
 /// Appends bytes to a regular file and syncs it, and its folder if the file is new.
 ///
 /// # Errors
-/// The path is not a regular file, or the disk refuses.
+/// The path is not a regular file, or it cannot be written.
 pub fn append_synced(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     let is_new = !path.exists();
     let mut file = append_to_regular_file(path).map_err(RunError::io(path))?;
@@ -35,10 +35,10 @@ pub fn append_synced(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     if is_new { sync_folder(folder_of(path)) } else { Ok(()) }
 }
 
-/// Creates a folder and its missing ancestors, and syncs the folder above each new one.
+/// Creates a folder and its missing ancestors, and syncs the parent of each new folder.
 ///
 /// # Errors
-/// The disk refuses. The new folders are removed again, so that the next attempt creates and syncs them.
+/// A folder cannot be created or synced. New folders are removed, so that the next attempt creates and syncs them.
 pub fn create_folder(folder: &Path) -> Result<(), RunError> {
     let missing: Vec<&Path> =
         folder.ancestors().take_while(|own| !own.as_os_str().is_empty() && !own.exists()).collect();
@@ -47,16 +47,16 @@ pub fn create_folder(folder: &Path) -> Result<(), RunError> {
     synced.inspect_err(|_| missing.iter().for_each(|own| drop(std::fs::remove_dir(own))))
 }
 
-/// The folder in which a file is: for a name alone, the one in which the program was started.
+/// Returns the folder of a file; for a bare name, the current directory.
 pub fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Makes the names in a folder survive a power cut, where the system can do that. After an error the caller must create the
-/// name again: a later sync proves nothing about it.
+/// Syncs the directory entries of a folder, on systems that support it. After an error the caller must create the entry
+/// again: a later successful sync does not cover it.
 ///
 /// # Errors
-/// The disk refuses.
+/// The folder cannot be synced.
 pub fn sync_folder(folder: &Path) -> Result<(), RunError> {
     #[cfg(any(test, feature = "test-kit"))]
     probe::note(folder).map_err(RunError::io(folder))?;
@@ -69,7 +69,7 @@ pub fn sync_folder(folder: &Path) -> Result<(), RunError> {
 /// Opens a regular file for reading.
 ///
 /// # Errors
-/// There is none, it is something else, or it cannot be opened.
+/// The file does not exist, is not a regular file, or cannot be opened.
 pub fn open_regular_file(path: &Path) -> io::Result<File> {
     if !std::fs::metadata(path)?.is_file() {
         return Err(no_regular_file());
@@ -77,10 +77,10 @@ pub fn open_regular_file(path: &Path) -> io::Result<File> {
     File::open(path)
 }
 
-/// Opens a regular file for appending and reading; makes it where there is none.
+/// Opens a regular file for appending and reading; creates it if it does not exist.
 ///
 /// # Errors
-/// It is something else, or cannot be opened or made.
+/// The path is not a regular file, or it cannot be opened or created.
 pub fn append_to_regular_file(path: &Path) -> io::Result<File> {
     if std::fs::metadata(path).is_ok_and(|own| !own.is_file()) {
         return Err(no_regular_file());
@@ -91,7 +91,7 @@ pub fn append_to_regular_file(path: &Path) -> io::Result<File> {
 /// Opens a regular file for reading and writing.
 ///
 /// # Errors
-/// There is no such file, it is something else, or it cannot be opened.
+/// The file does not exist, is not a regular file, or cannot be opened.
 pub(crate) fn write_to_regular_file(path: &Path) -> io::Result<File> {
     if !std::fs::metadata(path)?.is_file() {
         return Err(no_regular_file());
@@ -100,25 +100,25 @@ pub(crate) fn write_to_regular_file(path: &Path) -> io::Result<File> {
 }
 
 fn no_regular_file() -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidInput, "this is no regular file")
+    io::Error::new(io::ErrorKind::InvalidInput, "not a regular file")
 }
 
-/// The bytes of a regular file.
+/// Returns the bytes of a regular file.
 ///
 /// # Errors
-/// As [`open_regular_file`]; it cannot be read.
+/// As [`open_regular_file`], or the file cannot be read.
 pub fn read_regular_file(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     open_regular_file(path)?.read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
-/// The same as a text; empty where there is none, or none that can be read.
+/// Returns the text of a regular file, or an empty text if it cannot be read.
 pub fn read_regular_text(path: &Path) -> String {
     read_regular_file(path).ok().and_then(|bytes| String::from_utf8(bytes).ok()).unwrap_or_default()
 }
 
-/// What tests see of folder syncs of their thread, and how they let them fail.
+/// Records folder syncs per thread for tests, and lets them fail.
 #[cfg(any(test, feature = "test-kit"))]
 pub mod probe {
     use std::cell::{Cell, RefCell};
@@ -143,14 +143,14 @@ pub mod probe {
         Ok(())
     }
 
-    /// Whether this thread has synced a directory entry after it was created.
+    /// Returns whether this thread has synced a directory entry after it was created.
     pub fn has_synced(path: &Path) -> bool {
         let name = path.file_name().expect("a name").to_string_lossy().into_owned();
         let folder = super::folder_of(path);
         SYNCED.with_borrow(|synced| synced.iter().any(|(own, names)| own == folder && names.contains(&name)))
     }
 
-    /// Forgets the syncs of this thread, and lets those to come fail or succeed.
+    /// Clears the recorded syncs of this thread, and lets later syncs fail or succeed.
     pub fn reset(fails: bool) {
         SYNCED.with_borrow_mut(Vec::clear);
         FAILS.set(fails);
@@ -168,8 +168,8 @@ mod tests {
         create_folder(&two).expect("created");
         assert!(probe::has_synced(&one) && probe::has_synced(&two));
         probe::reset(false);
-        create_folder(&two).expect("it is there");
-        assert!(!probe::has_synced(&two), "nothing is new");
+        create_folder(&two).expect("it exists");
+        assert!(!probe::has_synced(&two), "no new folder");
         probe::reset(true);
         assert!(create_folder(&two.join("three/four")).is_err());
         probe::reset(false);

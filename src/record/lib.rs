@@ -1,6 +1,6 @@
-//! The record of a run: its lines and their chain of hashes, its manifest, its folder with lock and configuration, and
-//! what the first line states about the study, the lesson and the handout that the run belongs to. It also has the data from which
-//! lines are made: figures of a week, lessons and the standing of a student.
+//! The record of a run: lines with their hash chain, the manifest, the run folder with its lock, the configuration, and the
+//! stamps of the study, lesson and handout of a run. It also has the data from which lines are made: figures of a week,
+//! lessons and the progress of a student.
 //!
 //! Modules from bottom to top: `clock`, `mode`; `consent`, `rules`, `stamp`; `error`; `files`; `trajectory`; `answer_book`,
 //! `folder`; `figures`; `lesson`.

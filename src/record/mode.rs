@@ -1,36 +1,36 @@
-//! What a run is for, and what it allows.
+//! Modes of a run.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// Mode of a run; it is recorded and cannot be changed.
+/// The purpose of a run. It is recorded and cannot be changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Mode {
-    /// A human baseline session: exactly what agents have.
+    /// A human baseline session, with the tools and information of agents.
     Baseline,
-    /// For trying things out.
+    /// A run for experiments of the player.
     Sandbox,
-    /// For lessons.
+    /// A run of a lesson.
     Lesson,
-    /// For work on the mechanics: hidden state can be seen.
+    /// A run for work on the mechanics, with access to hidden state.
     Debug,
 }
 
 impl Mode {
-    /// Every mode that a run can have.
+    /// All modes.
     pub const ALL: [Mode; 4] = [Mode::Baseline, Mode::Sandbox, Mode::Lesson, Mode::Debug];
 
-    /// The modes of new runs. There are no lessons yet; runs that were recorded as one are read and played on.
+    /// The modes that a user can choose for a new run. Lessons set their mode themselves.
     pub const OFFERED: [Mode; 3] = [Mode::Baseline, Mode::Sandbox, Mode::Debug];
 
-    /// The mode of a branch of a run of this mode, unless another is asked for: no branch is a baseline, and none belongs to a lesson.
+    /// Returns the default mode of a branch. A branch is never a baseline run and never belongs to a lesson.
     pub fn of_branch(self) -> Mode {
         if matches!(self, Mode::Baseline | Mode::Lesson) { Mode::Sandbox } else { self }
     }
 
-    /// Word as options and manifests write it.
+    /// Returns the name in options and manifests.
     pub fn id(self) -> &'static str {
         match self {
             Mode::Baseline => "baseline",
@@ -40,18 +40,18 @@ impl Mode {
         }
     }
 
-    /// The mode with this word.
+    /// Returns the mode with a name.
     pub fn parse(id: &str) -> Option<Mode> {
         Mode::ALL.into_iter().find(|mode| mode.id() == id)
     }
 
-    /// What the mode is for, in a line.
+    /// Returns the purpose in one line.
     pub fn purpose(self) -> &'static str {
         match self {
-            Mode::Baseline => "a human baseline session: exactly what agents have, complete record",
-            Mode::Sandbox => "trying things out",
+            Mode::Baseline => "human baseline session: the tools of agents, complete record",
+            Mode::Sandbox => "free experiments",
             Mode::Lesson => "learning",
-            Mode::Debug => "work on the mechanics: hidden state, single days, other parameters",
+            Mode::Debug => "work on the mechanics: hidden state, single days, changed parameters",
         }
     }
 }

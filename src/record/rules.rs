@@ -1,5 +1,5 @@
-//! By which rules a session is played: what the program shows beyond what agents have, what it records, how long a person
-//! may take. They stand in the first line of the run.
+//! Rules of a session: information beyond that of agents, recorded activity, and time limits. The first line of a run
+//! records them.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,87 +9,87 @@ use crate::mode::Mode;
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SessionRules {
-    /// Alerts recommend: they name an amount and fill in the form. Otherwise they state facts.
+    /// Whether alerts recommend an amount and fill in the form. Otherwise they state facts.
     pub advice: bool,
-    /// The person sees how their own forecasts have done while they make new ones.
+    /// Whether forecast forms show how earlier forecasts performed.
     pub calibration: bool,
-    /// What the final page shows.
+    /// Content of the final page.
     pub results: ResultsShown,
-    /// What is kept of the texts that a person writes.
+    /// How free text is recorded.
     pub free_text: FreeText,
-    /// What is kept of texts that were edited and left.
+    /// How abandoned texts are recorded.
     pub drafts: DraftsKept,
     /// Kinds of activity that are not recorded.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unrecorded: Vec<String>,
-    /// The person is asked why they stop the clock.
+    /// Whether stopping the clock asks for a reason.
     #[serde(default)]
     pub pause_reason: bool,
-    /// A setting that earlier builds had: it is read and never written.
+    /// A setting of earlier builds. It is read and never written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub code_words: Option<bool>,
-    /// How long a person may take.
+    /// Time limits.
     #[serde(default)]
     pub limits: TimeLimits,
 }
 
-/// What the final page shows.
+/// Content of the final page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ResultsShown {
-    /// That the run is over.
+    /// Only that the run is over.
     None,
-    /// The person's own result.
+    /// The participant's own result.
     Own,
-    /// It, beside published ones.
+    /// The own result and published results.
     Published,
 }
 
-/// What is kept of the texts that a person writes: notes, rationales are always kept.
+/// Recording of notes and answers in words. Rationales are always recorded in full.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FreeText {
-    /// Everything.
+    /// Full text.
     Kept,
-    /// Lengths and digests of notes and answers in words.
+    /// Lengths and digests only.
     Masked,
 }
 
-/// What is kept of texts that were edited and left.
+/// Recording of texts that were edited and abandoned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DraftsKept {
     /// Nothing.
     None,
-    /// How they came to be: lengths, pauses, deletions.
+    /// Lengths, pauses and deletions.
     Lengths,
-    /// Also the text that was left.
+    /// Also the abandoned text.
     Text,
 }
 
-/// How long a person may take, in active minutes; none: as long as they like.
+/// Time limits in active minutes; `None` means no limit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TimeLimits {
-    /// For a week of the company.
+    /// Limit of one week of the company.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub week_minutes: Option<u32>,
-    /// For a sitting.
+    /// Limit of one session.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub session_minutes: Option<u32>,
-    /// For all sittings.
+    /// Limit of all sessions together.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub study_minutes: Option<u32>,
-    /// How long before a limit the person is warned.
+    /// Minutes before a limit at which the participant is warned.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub warning_minutes: Option<u32>,
-    /// What happens when it is reached.
+    /// Action at the limit.
     #[serde(default)]
     pub at_limit: AtLimit,
 }
 
 impl TimeLimits {
-    /// Checks that a warning comes after the time that it warns of has begun.
+    /// Checks that the warning time is shorter than each limit. Returns the key and the message otherwise.
     pub fn check_warning(&self) -> Result<(), (&'static str, String)> {
         let Some(warning) = self.warning_minutes else { return Ok(()) };
         let limits = [
@@ -102,38 +102,38 @@ impl TimeLimits {
             Some((key, own)) => Err((
                 "limits.warning_minutes",
                 format!(
-                    "a warning {warning} minutes before the end of {key} = {own} would stand from the beginning"
+                    "a warning {warning} minutes before the end of {key} = {own} would show from the start"
                 ),
             )),
         }
     }
 }
 
-/// What happens when a time limit is reached.
+/// Action when a time limit is reached.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum AtLimit {
-    /// The person is reminded.
+    /// Remind the participant.
     #[default]
     Remind,
-    /// The week is filed with the naive projection.
+    /// Submit the week with naive forecasts.
     Naive,
-    /// The clock is stopped, until the experimenter starts it.
+    /// Stop the clock until the experimenter starts it.
     Pause,
 }
 
 impl SessionRules {
-    /// Whether neither result nor figures are shown any more: results are kept from participants, and the run is over.
+    /// Returns whether the final result and figures are hidden: the study withholds results, and the run is over.
     pub fn hide_result(&self, is_over: bool) -> bool {
         self.hides_results() && is_over
     }
 
-    /// Whether results are kept from participants.
+    /// Returns whether the study withholds results from participants.
     pub fn hides_results(&self) -> bool {
         self.results == ResultsShown::None
     }
 
-    /// The rules of a run that belongs to no study.
+    /// Returns the rules of a run outside of a study.
     pub fn of_mode(mode: Mode) -> SessionRules {
         let open = SessionRules {
             advice: true,
@@ -147,17 +147,17 @@ impl SessionRules {
             limits: TimeLimits::default(),
         };
         match mode {
-            // What agents do not have, a comparable person does not have.
+            // Agents have neither, so baseline participants have neither.
             Mode::Baseline => {
                 SessionRules { advice: false, calibration: false, results: ResultsShown::Own, ..open }
             }
-            // What is to be found out is not told beside it.
+            // Advice would give away the solutions of lessons.
             Mode::Lesson => SessionRules { advice: false, ..open },
             Mode::Sandbox | Mode::Debug => open,
         }
     }
 
-    /// Whether activity of a kind is recorded.
+    /// Returns whether activity of a kind is recorded.
     pub fn records(&self, kind: &str) -> bool {
         !self.unrecorded.iter().any(|left_out| left_out == kind)
     }

@@ -1,33 +1,33 @@
-//! What the first line of a run says of the study, the lesson and the hand-out that it belongs to.
+//! Stamps of the study, lesson and handout of a run in its first line.
 
 use serde::{Deserialize, Serialize};
 
 use crate::mode::Mode;
 
-/// The study, and the place of this person in it.
+/// The study of a run, and the assignment of the participant.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StudyStamp {
     /// Name of the study.
     pub name: String,
-    /// blake3 digest of its protocol, in hexadecimal digits.
+    /// BLAKE3 digest of its protocol, in hexadecimal digits.
     pub digest: String,
-    /// Condition the person was assigned to.
+    /// Assigned condition.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub condition: Option<String>,
-    /// Place of the person in the assignment, from 1.
+    /// Position in the assignment, from 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub order: Option<u32>,
-    /// This is the practice, not the session.
+    /// Whether this is the practice run.
     #[serde(default)]
     pub practice: bool,
-    /// Labels that were refused before this one was taken.
+    /// Number of labels that were rejected before this one was accepted.
     #[serde(default)]
     pub refused_labels: u32,
 }
 
 #[cfg(any(test, feature = "test-kit"))]
 impl StudyStamp {
-    /// That of a pilot in which nobody is assigned to anything.
+    /// Returns the stamp of a pilot study without conditions.
     pub fn pilot(practice: bool) -> StudyStamp {
         StudyStamp {
             name: "pilot".to_owned(),
@@ -40,22 +40,22 @@ impl StudyStamp {
     }
 }
 
-/// An earlier run of the same person.
+/// An earlier run of the same participant.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EarlierRun {
-    /// Run.
+    /// Id of the run.
     pub run: String,
-    /// Its mode.
+    /// Mode.
     pub mode: Mode,
-    /// Its seed.
+    /// Seed.
     pub seed: u64,
-    /// Its scenario.
+    /// Scenario.
     pub scenario: String,
-    /// When it was created, RFC 3339.
+    /// Moment of creation, RFC 3339.
     pub created: String,
 }
 
-/// Which lesson a run belongs to, as its first line says.
+/// The lesson of a run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LessonStamp {
@@ -67,32 +67,32 @@ pub struct LessonStamp {
     pub part: u32,
 }
 
-/// Which hand-out of a class a run began with, as its first line says.
+/// The handout from which a run started.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HandoutStamp {
-    /// Name of the class: eight hexadecimal digits.
+    /// Id of the class: eight hexadecimal digits.
     pub class: String,
-    /// The run that the hand-out begins; later parts and tries have names of their own.
+    /// Id of the first run of the handout. Later parts and attempts have their own ids.
     pub run: String,
 }
 
-/// What a hand-out lays down for a new run.
+/// Values that a handout sets for a new run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct HandoutEntry {
-    /// The hand-out.
+    /// The handout.
     pub stamp: HandoutStamp,
-    /// Name of the run; one of its own where the hand-out names another.
+    /// Id of the run; `None` for a new id.
     pub run: Option<String>,
 }
 
 impl HandoutEntry {
-    /// For the run that a hand-out begins.
+    /// Returns the values for the first run of a handout.
     pub fn of_first_run(stamp: HandoutStamp) -> HandoutEntry {
         HandoutEntry { run: Some(stamp.run.clone()), stamp }
     }
 
-    /// For a run that follows the one that the hand-out begins.
+    /// Returns the values for a later run of the same handout.
     pub fn of_later_run(stamp: HandoutStamp) -> HandoutEntry {
         HandoutEntry { stamp, run: None }
     }

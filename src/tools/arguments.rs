@@ -1,4 +1,4 @@
-//! Reading arguments: from JSON to typed values, with the refusals that all tools share
+//! Parsing of arguments from JSON to typed values, with the rejections that all tools share
 //! (docs/interfaces/tools.md#arguments).
 
 use std::sync::Arc;
@@ -15,15 +15,15 @@ use novamind_base::notation::plain_numbers;
 use novamind_world::identifiers::{Channel, Group, Plan};
 use novamind_world::settings::{PerCustomer, PerGroup, PerPlan};
 
-/// Arguments of a call whose names are right: absent and null ones are left out.
+/// Arguments of a call with valid names, without absent and null ones.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Arguments(Map<String, Value>);
 
 impl Arguments {
-    /// Takes the arguments of a call as they came; the numbers are those that documentation names.
+    /// Checks the names of the arguments of a call. `numbers` fills the placeholders of error messages.
     ///
     /// # Errors
-    /// `wrong_type` when they are no object, `unknown_argument`, `argument_missing`.
+    /// `wrong_type` if they are not an object, `unknown_argument`, `argument_missing`.
     pub fn of(
         spec: &Spec,
         given: &Value,
@@ -64,20 +64,20 @@ impl Arguments {
         Ok(Arguments(map))
     }
 
-    /// The arguments as a JSON object.
+    /// Returns the arguments as a JSON object.
     pub fn as_map(&self) -> &Map<String, Value> {
         &self.0
     }
 
-    /// An argument, if it was given.
+    /// Returns an argument, if it was given.
     pub fn get(&self, name: &str) -> Option<&Value> {
         self.0.get(name)
     }
 
-    /// Reads an argument, if it was given.
+    /// Parses an argument, if it was given.
     ///
     /// # Errors
-    /// What the reader finds wrong with it.
+    /// Those of `reader`.
     pub fn read<T>(
         &self,
         name: &'static str,
@@ -86,7 +86,7 @@ impl Arguments {
         self.get(name).map(|value| reader(value, name)).transpose()
     }
 
-    /// Whether nothing was given.
+    /// Returns whether no argument was given.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -96,8 +96,8 @@ fn is_named(spec: &Spec, name: &str) -> bool {
     spec.arguments.iter().any(|argument| argument.name == name || argument.alias == Some(name))
 }
 
-/// Whether an object without names of arguments can be the one argument itself. A deal names its customer or its offerings;
-/// a map can have any key.
+/// Returns whether an object without argument names can be the single argument itself. A deal has a customer or offerings; a
+/// map can have any key.
 fn may_be_whole(spec: &Spec, map: &Map<String, Value>) -> bool {
     let is_deal = spec
         .arguments
@@ -111,33 +111,33 @@ fn names(spec: &Spec) -> String {
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
 }
 
-/// A JSON number; booleans and texts are none.
+/// Returns a JSON number, but not a Boolean or a text.
 pub fn number(value: &Value) -> Option<f64> {
     value.as_f64()
 }
 
-/// A JSON whole number; integral floats count, booleans and texts do not.
+/// Returns a JSON integer, including integral floats, but not a Boolean or a text.
 pub fn integer(value: &Value) -> Option<i64> {
     let exact = |number: &f64| number.fract() == 0.0 && number.abs() < 9.2e18;
     value.as_i64().or_else(|| value.as_f64().filter(exact).map(|number| number as i64))
 }
 
 impl Range {
-    /// A whole number of this range; integral floats count, booleans and texts do not.
+    /// Returns a JSON integer in this range, including integral floats.
     pub fn whole<T: TryFrom<i64>>(&self, value: &Value) -> Option<T> {
         let number = integer(value).filter(|number| self.holds(*number as f64))?;
         T::try_from(number).ok()
     }
 }
 
-/// Replaces what a call names, and leaves the rest.
+/// Replaces a setting if a call gives it.
 pub fn replace<T>(now: &mut T, given: Option<T>) {
     if let Some(given) = given {
         *now = given;
     }
 }
 
-/// A text argument, empty if it was not given.
+/// Returns a text argument, or an empty text if it was not given.
 pub fn text<'a>(arguments: &'a Arguments, name: &str) -> Result<&'a str, Refusal> {
     match arguments.get(name) {
         None => Ok(""),
@@ -145,27 +145,27 @@ pub fn text<'a>(arguments: &'a Arguments, name: &str) -> Result<&'a str, Refusal
     }
 }
 
-/// A number as it was sent: 80 and 80.0 are the same amount, and are written differently.
+/// A number in its sent notation: 80 and 80.0 are the same amount, but are written differently.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sent {
-    /// The number.
+    /// Value.
     pub value: f64,
     written: Number,
 }
 
 impl Sent {
-    /// Takes a JSON number; booleans and texts are none.
+    /// Parses a JSON number, but not a Boolean or a text.
     pub fn of(value: &Value) -> Option<Sent> {
         let written = value.as_number()?.clone();
         Some(Sent { value: written.as_f64()?, written })
     }
 
-    /// A number that is in force: written with a decimal point.
+    /// Returns the notation of a setting: with a decimal point.
     pub fn stored(value: f64) -> Sent {
         Sent { value, written: Number::from_f64(value).unwrap_or_else(|| 0.into()) }
     }
 
-    /// The sum of `parts`: without a decimal point if none of them has one, as in the release.
+    /// Returns the sum of `parts`, without a decimal point if none of them has one, as in the release.
     pub fn sum<'a>(value: f64, mut parts: impl Iterator<Item = &'a Sent>) -> Sent {
         const EXACT: f64 = 9e15;
         match parts.all(|part| !part.written.is_f64()) && value.abs() < EXACT {
@@ -181,24 +181,23 @@ impl Serialize for Sent {
     }
 }
 
-/// `wrong_type` for an argument.
+/// Returns the rejection `wrong_type` for an argument.
 pub fn wrong_type(field: &str, expected: &str) -> Refusal {
     Refusal::at(field, "wrong_type", format!("{field} has the wrong type: expected {expected}"))
 }
 
-/// What a number of a map must be, with the code and words of its refusal.
+/// The requirement for numbers of a map, with its rejection.
 #[derive(Clone, Copy)]
 pub struct Amount {
-    /// Code of the refusal.
+    /// Rejection code.
     pub code: &'static str,
-    /// Words, after "the value for KEY".
+    /// Message after "the value for KEY".
     pub words: &'static str,
     /// Allowed numbers.
     pub range: Range,
 }
 
 impl Amount {
-    /// Reads one value.
     fn read(&self, value: &Value, field: &str) -> Result<Sent, Refusal> {
         match Sent::of(value) {
             Some(sent) if self.range.holds(sent.value) => Ok(sent),
@@ -211,7 +210,7 @@ fn last(field: &str) -> &str {
     field.rsplit('.').next().unwrap_or(field)
 }
 
-/// A known group.
+/// Parses a known group.
 pub fn known_group(key: &str, field: &str, view: &View<'_>) -> Result<Group, Refusal> {
     Group::parse(key).filter(|group| view.knows(*group)).ok_or_else(|| {
         let known: Vec<&str> = view.known_groups().map(Group::id).collect();
@@ -223,14 +222,14 @@ pub fn known_group(key: &str, field: &str, view: &View<'_>) -> Result<Group, Ref
     })
 }
 
-/// A plan.
+/// Parses a plan.
 pub fn plan(key: &str, field: &str) -> Result<Plan, Refusal> {
     Plan::parse(key).ok_or_else(|| {
         Refusal::at(field, "unknown_plan", format!("plan {key} does not exist; the plans are A, B, C"))
     })
 }
 
-/// A channel.
+/// Parses a channel.
 pub fn channel(key: &str, field: &str) -> Result<Channel, Refusal> {
     Channel::parse(key).ok_or_else(|| {
         let known = Channel::ALL.map(Channel::id).join(", ");
@@ -242,14 +241,13 @@ pub fn channel(key: &str, field: &str) -> Result<Channel, Refusal> {
     })
 }
 
-/// A customer number; existence is not checked.
+/// Parses a customer number, without checking that the customer exists.
 pub fn customer(key: &str, field: &str) -> Result<i64, Refusal> {
     key.trim().parse().map_err(|_| {
         Refusal::at(field, "customer_not_integer", format!("customer id {key} is not an integer"))
     })
 }
 
-/// A map from keys to amounts.
 fn amounts<K: std::hash::Hash + Eq>(
     value: &Value,
     field: &str,
@@ -259,7 +257,7 @@ fn amounts<K: std::hash::Hash + Eq>(
     entries(value, field, key, |value, field| amount.read(value, field))
 }
 
-/// A map: all its keys are read before its values.
+/// Parses a map: first all keys, then the values.
 fn entries<K: std::hash::Hash + Eq, V>(
     value: &Value,
     field: &str,
@@ -277,12 +275,11 @@ fn as_map<'a>(value: &'a Value, field: &str) -> Result<&'a Map<String, Value>, R
     value.as_object().ok_or_else(|| Refusal::at(field, "not_a_map", format!("{field} must be a map")))
 }
 
-/// The numbers of a map, without the way they were written.
 fn values<K: std::hash::Hash + Eq>(map: IndexMap<K, Sent>) -> IndexMap<K, f64> {
     map.into_iter().map(|(key, sent)| (key, sent.value)).collect()
 }
 
-/// A map of groups, with its numbers as they were sent.
+/// Parses a map of groups, keeping the sent notation of numbers.
 pub fn sent_per_group(
     value: &Value,
     field: &str,
@@ -292,7 +289,7 @@ pub fn sent_per_group(
     amounts(value, field, amount, |key, field| known_group(key, field, view))
 }
 
-/// A map of channels to maps of groups, with its numbers as they were sent.
+/// Parses a map of channels to maps of groups, keeping the sent notation of numbers.
 pub fn sent_per_channel_group(
     value: &Value,
     field: &str,
@@ -302,22 +299,22 @@ pub fn sent_per_channel_group(
     entries(value, field, channel, |value, field| sent_per_group(value, field, amount, view))
 }
 
-/// A map of groups.
+/// Parses a map of groups.
 pub fn per_group(value: &Value, field: &str, amount: Amount, view: &View<'_>) -> Result<PerGroup, Refusal> {
     sent_per_group(value, field, amount, view).map(values)
 }
 
-/// A map of plans.
+/// Parses a map of plans.
 pub fn per_plan(value: &Value, field: &str, amount: Amount) -> Result<PerPlan, Refusal> {
     amounts(value, field, amount, plan).map(values)
 }
 
-/// A map of channels.
+/// Parses a map of channels.
 pub fn per_channel(value: &Value, field: &str, amount: Amount) -> Result<IndexMap<Channel, f64>, Refusal> {
     amounts(value, field, amount, channel).map(values)
 }
 
-/// A map of customers. In the release, this map alone is read entry by entry.
+/// Parses a map of customers entry by entry, which the release does for this map only.
 pub fn per_customer(value: &Value, field: &str, amount: Amount) -> Result<PerCustomer, Refusal> {
     let entry = |(name, value): (&String, &Value)| {
         let path = format!("{field}.{name}");
@@ -326,7 +323,7 @@ pub fn per_customer(value: &Value, field: &str, amount: Amount) -> Result<PerCus
     as_map(value, field)?.iter().map(entry).collect()
 }
 
-/// A map of groups to maps of plans.
+/// Parses a map of groups to maps of plans.
 pub fn per_group_plan(
     value: &Value,
     field: &str,
@@ -337,7 +334,7 @@ pub fn per_group_plan(
     entries(value, field, group, |value, field| per_plan(value, field, amount))
 }
 
-/// A map of channels to maps of groups.
+/// Parses a map of channels to maps of groups.
 pub fn per_channel_group(
     value: &Value,
     field: &str,
@@ -348,16 +345,16 @@ pub fn per_channel_group(
     Ok(matrix.into_iter().map(|(channel, groups)| (channel, values(groups))).collect())
 }
 
-/// Writes a field without a decimal point if its number is whole, where the release returns an integer.
+/// Serializes whole numbers without a decimal point, for fields that are integers in the release.
 ///
 /// # Errors
-/// Those of the serialiser.
+/// Those of the serializer.
 pub(super) fn plain<T: Serialize, S: Serializer>(data: &T, serializer: S) -> Result<S::Ok, S::Error> {
     let value = serde_json::to_value(data).map_err(serde::ser::Error::custom)?;
     plain_numbers(value).serialize(serializer)
 }
 
-/// Data as the JSON of a call.
+/// Returns data as the JSON of a call.
 pub(super) fn as_data(data: &impl Serialize) -> Value {
     serde_json::to_value(data).map_or(Value::Null, plain_numbers)
 }

@@ -1,7 +1,7 @@
-//! The largest numbers that arguments may hold, so that no sum of money can grow beyond what a number holds.
+//! Limits of numbers in arguments, which keep all sums of money exact.
 //!
-//! A session asks for them when a call is made, not when a recorded one is applied again: a run that holds a larger
-//! number from an older version stays what it was.
+//! A session checks them for new calls only. Recorded calls of older versions can have larger numbers and are replayed
+//! unchanged.
 
 use serde_json::Value;
 
@@ -10,13 +10,13 @@ use super::refusal::Refusal;
 use super::spec::{ArgumentKind, MOST_DOLLARS, Spec};
 use novamind_base::notation::grouped;
 
-/// Most dollars of a forecast, above and below zero.
+/// Maximum magnitude of a forecast, in dollars.
 pub const MOST_FORECAST: f64 = 1e15;
 
-/// Code of the refusal.
+/// Rejection code.
 pub const CODE: &str = "amount_too_large";
 
-/// Refuses arguments that hold a number beyond its bound.
+/// Rejects arguments with a number beyond its limit.
 ///
 /// # Errors
 /// `amount_too_large`, with the path of the first such number.
@@ -37,12 +37,12 @@ pub fn hold(spec: &Spec, arguments: &Arguments) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Refuses a number that lies beyond a bound, wherever it stands in a value.
+/// Rejects a number beyond a limit at any depth of a value.
 fn check(value: &Value, bound: f64, path: &str, unit: &str) -> Result<(), Refusal> {
     let within = |name: &str, value: &Value| check(value, bound, &format!("{path}.{name}"), unit);
     match value {
         Value::Array(list) => {
-            // A deal begins with the number of its customer.
+            // The first element of a deal is the number of its customer.
             let is_deal = matches!(list.as_slice(), [_, Value::Array(_), ..]) && !list[0].is_array();
             let values = list.iter().enumerate().skip(usize::from(is_deal));
             values.into_iter().try_for_each(|(at, value)| within(&at.to_string(), value))
@@ -52,7 +52,7 @@ fn check(value: &Value, bound: f64, path: &str, unit: &str) -> Result<(), Refusa
             values.try_for_each(|(name, value)| within(name, value))
         }
         Value::Number(number) => refuse_beyond(number.as_f64().unwrap_or(f64::INFINITY), bound, path, unit),
-        // Prices of deals are also taken as text.
+        // Prices of deals may also be texts.
         Value::String(text) => {
             let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
             number.map_or(Ok(()), |number| refuse_beyond(number, bound, path, unit))
@@ -61,12 +61,12 @@ fn check(value: &Value, bound: f64, path: &str, unit: &str) -> Result<(), Refusa
     }
 }
 
-/// Refuses one number beyond a bound.
+/// Rejects a number beyond a limit.
 pub(super) fn refuse_beyond(number: f64, bound: f64, path: &str, unit: &str) -> Result<(), Refusal> {
     if number.abs() <= bound { Ok(()) } else { Err(too_large(bound, path, unit)) }
 }
 
-/// The refusal of a number beyond a bound.
+/// Returns the rejection of a number beyond a limit.
 pub(super) fn too_large(bound: f64, path: &str, unit: &str) -> Refusal {
     let most = match unit.strip_prefix('$') {
         Some(rest) => format!("${}{rest}", grouped(bound, 0)),

@@ -1,4 +1,4 @@
-//! The catalogue of all tools: each as [`AnyTool`], the one answer that any of them gives, search by name and code.
+//! The catalogue of all tools as [`AnyTool`], with search by name and code.
 
 mod get_tool_documentation;
 
@@ -25,28 +25,28 @@ use super::{Arguments, Kind, Module, Planned, Refusal, Spec, Tool, ToolId, View}
 use get_tool_documentation::GetToolDocumentation;
 use novamind_world::settings::Settings;
 
-/// A tool of which only the name is known: its arguments are JSON, and its answer is one of all.
+/// A tool with JSON arguments and an [`Answer`], independent of its type.
 pub trait AnyTool: Sync {
-    /// Everything there is to know about it.
+    /// Returns the specification.
     fn spec(&self) -> &'static Spec;
 
-    /// The present values of its arguments, as a call would send them; empty where there are none.
+    /// Returns the current values of the arguments in the notation of a call; empty for tools without settings.
     fn current(&self, settings: &Settings) -> Map<String, Value>;
 
-    /// What a call with these arguments would do and say.
+    /// Returns the effect and the result of a call with these arguments.
     ///
     /// # Errors
-    /// The refusals that its [`Spec`] lists, in the order of its checks.
+    /// The rejections that its [`Spec`] lists, in the order of its checks.
     fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Planned<Answer>, Refusal>;
 }
 
-/// The tools and their answers, from the list of their types.
+/// Defines the catalogue and the results from the list of tool types.
 macro_rules! catalogue {
     ($($tool:ident),* $(,)?) => {
-        /// All tools, in the order in which they are shown.
+        /// All tools, in display order.
         pub static CATALOGUE: [&dyn AnyTool; [$(ToolId::$tool),*].len()] = [$(&$tool),*];
 
-        /// What a tool answers. Its JSON is that of the tool's own type.
+        /// The result of a tool. Its JSON is that of the tool's own type.
         #[derive(Debug, Clone, PartialEq, Serialize)]
         #[serde(untagged)]
         #[allow(missing_docs)] // Each is described by its `Spec`.
@@ -74,41 +74,41 @@ macro_rules! catalogue {
 each_tool!(catalogue);
 
 impl ToolId {
-    /// The tool itself.
+    /// Returns the tool.
     pub fn tool(self) -> &'static dyn AnyTool {
         CATALOGUE[self as usize]
     }
 
-    /// Everything there is to know about it.
+    /// Returns the specification.
     pub fn spec(self) -> &'static Spec {
         self.tool().spec()
     }
 
-    /// Whether a call of it runs code at once, which may take its time.
+    /// Returns whether a call executes code at once, which can be slow.
     pub fn runs_code(self) -> bool {
         matches!(self, ToolId::PythonExec | ToolId::RunScript)
     }
 
-    /// Returns whether a request that calls it can carry an id: a retry must not run it twice. Reading again and running a
-    /// script again change nothing.
+    /// Returns whether a request can have an id, which prevents a retry from running it twice. Reads and scripts need none,
+    /// because repeating them changes nothing.
     pub fn takes_request_id(self) -> bool {
         self.spec().kind != Kind::Read && !self.runs_code()
     }
 
-    /// All of them, in the order in which they are shown.
+    /// Returns all tools, in display order.
     pub fn all() -> impl Iterator<Item = ToolId> {
         CATALOGUE.iter().map(|tool| tool.spec().id)
     }
 }
 
 impl Answer {
-    /// The answer as the trajectory and programs have it.
+    /// Returns the JSON for the trajectory and for clients.
     pub fn to_json(&self) -> Value {
         serde_json::to_value(self).unwrap_or(Value::Null)
     }
 }
 
-/// The tool with this name; case counts. The module may stand before it: `pricing.set_prices`.
+/// Returns the tool with a case-sensitive name, optionally with its module: `pricing.set_prices`.
 pub fn find(name: &str) -> Option<&'static dyn AnyTool> {
     CATALOGUE.into_iter().find(|tool| {
         let spec = tool.spec();
@@ -119,12 +119,12 @@ pub fn find(name: &str) -> Option<&'static dyn AnyTool> {
     })
 }
 
-/// The tool with this code; case does not count.
+/// Returns the tool with a case-insensitive code.
 pub fn find_code(code: &str) -> Option<&'static dyn AnyTool> {
     CATALOGUE.into_iter().find(|tool| tool.spec().code.eq_ignore_ascii_case(code.trim()))
 }
 
-/// All tools by module, one line each.
+/// Returns the list of all tools by module, one line each.
 pub fn overview() -> String {
     let mut text = String::new();
     for module in Module::ALL {
@@ -136,7 +136,7 @@ pub fn overview() -> String {
     text
 }
 
-/// Up to three names of tools that look like a name that does not exist.
+/// Returns up to three tool names that are similar to an unknown one.
 pub fn nearest(name: &str) -> Vec<&'static str> {
     novamind_base::nearest(name, CATALOGUE.iter().map(|tool| tool.spec().name()))
 }
@@ -154,7 +154,7 @@ mod tests {
         assert_eq!(nearest("set_price")[0], "set_prices");
     }
 
-    /// The 34 tools that agents are told of, and the two readings beside them.
+    /// The 34 tools that agents know, and two additional read-only tools.
     const EXPECTED: &str = "\
         set_prices set_model_tiers set_usage_quotas set_promotion set_daily_spend set_targeted_ad_spend \
         set_ads_strength set_lead_promotion post_social_media get_social_posts set_targeted_ops_spend \

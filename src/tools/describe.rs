@@ -1,4 +1,4 @@
-//! A tool as text and as JSON, for help, documentation and programs.
+//! Documentation of a tool as text and as JSON.
 
 use std::fmt::Write;
 
@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::Numbers;
 use super::spec::{Argument, Output, Spec};
 
-/// Everything about one tool, with the numbers in force.
+/// Returns the manual of a tool, with the numbers in force.
 pub fn manual(spec: &Spec, numbers: &Numbers) -> String {
     let mut text = format!("{}.{} ({}): {}\n", spec.module.id(), spec.name(), spec.code, spec.summary);
     for argument in spec.arguments {
@@ -22,7 +22,7 @@ pub fn manual(spec: &Spec, numbers: &Numbers) -> String {
         let _ = writeln!(text, "Tables: {}.", spec.writes.join(", "));
     }
     if !spec.refusals.is_empty() {
-        let _ = writeln!(text, "Refusals: {}.", spec.refusals.join(", "));
+        let _ = writeln!(text, "Rejections: {}.", spec.refusals.join(", "));
     }
     for output in spec.returns {
         let _ = writeln!(text, "Returns {} ({}): {}.", output.name, output.kind, numbers.fill(output.doc));
@@ -37,7 +37,7 @@ fn argument_line(argument: &Argument) -> String {
     format!("{} ({}{unit}, {need}): {}", argument.name, argument.kind.words(), argument.doc)
 }
 
-/// A tool as programs read it, with the numbers in force.
+/// Documentation of a tool for programs, with the numbers in force.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ToolDocument {
     name: &'static str,
@@ -79,7 +79,7 @@ struct OutputDocument {
     description: String,
 }
 
-/// A tool as programs read it, with the numbers in force.
+/// Documentation of a tool for programs, with the numbers in force.
 pub fn document(spec: &'static Spec, numbers: &Numbers) -> ToolDocument {
     let argument = |argument: &Argument| ArgumentDocument {
         name: argument.name,

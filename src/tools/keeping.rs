@@ -1,11 +1,11 @@
-//! Keeping statements under a name and forgetting them: what calculations and scripts share.
+//! Storing and removing named statements, for calculations and scripts.
 
 use serde::Serialize;
 
 use super::notebook::{Kept, NamedStatements, NotebookChange};
 use super::planned::Planned;
 
-/// Statements and their name, as a call gives them.
+/// Statements with their name in a call.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NamedCode {
     /// Name.
@@ -14,17 +14,17 @@ pub struct NamedCode {
     pub code: String,
 }
 
-/// Statements that are kept now.
+/// The result of storing statements.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct KeptCode {
-    /// Their name.
+    /// Name.
     pub name: String,
-    /// Their characters.
+    /// Characters of the code.
     pub code_length: usize,
 }
 
 impl NamedCode {
-    /// The call that keeps them.
+    /// Returns the call that stores the statements.
     pub(super) fn keep(self, what: Kept) -> Planned<KeptCode> {
         let NamedCode { name, code } = self;
         let answer = KeptCode { name: name.clone(), code_length: code.chars().count() };
@@ -32,24 +32,23 @@ impl NamedCode {
     }
 }
 
-/// What is left after a name was forgotten.
+/// The result of removing statements.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Remaining {
-    /// The name that was forgotten.
+    /// Removed name.
     pub name: String,
-    /// The others.
+    /// Remaining names.
     pub remaining: Vec<String>,
 }
 
 impl Remaining {
-    /// The call that forgets a name.
+    /// Returns the call that removes a name.
     pub(super) fn without(statements: &NamedStatements, what: Kept, name: String) -> Planned<Remaining> {
         let answer = Remaining { name: name.clone(), remaining: owned(statements.names_without(&name)) };
         Planned::keeping(NotebookChange::Forget { what, name }, answer)
     }
 }
 
-/// Names that an answer takes with it.
 pub(super) fn owned(names: Vec<&str>) -> Vec<String> {
     names.into_iter().map(str::to_owned).collect()
 }

@@ -1,9 +1,9 @@
-//! The tools: every action and reading of the player, one file each (docs/interfaces/tools.md).
+//! The tools of the player, one file each (docs/interfaces/tools.md).
 //!
-//! A tool is data ([`Spec`]), its typed arguments and its typed answer, and three small functions: what its arguments are
-//! now ([`Tool::current`]), what the JSON of a call says ([`Tool::read`]), and what the call would do and say
-//! ([`Tool::plan`], pure, so it also previews). JSON is read once and written once. Who knows a tool only by its name
-//! takes it from the `catalogue` as [`AnyTool`]. Adding a tool touches one file and the lists in `tool_id` and `catalogue`.
+//! A tool has data ([`Spec`]), typed arguments, a typed result, and three functions. [`Tool::current`] returns the current
+//! values of its arguments, [`Tool::read`] parses the JSON of a call, and [`Tool::plan`] returns the effect and the result of a
+//! call without applying it, also for previews. Callers that know only the name of a tool use [`AnyTool`] of the `catalogue`. A
+//! new tool needs one file and an entry in the lists of `tool_id` and `catalogue`.
 //!
 //! Modules from bottom to top: `refusal`, `numbers`, `tool_id`, `notebook`; `spec`, `planned`, `surroundings`, `view`; `arguments`,
 //! `bounds`, `describe`, `keeping`, `tool`; the families of tools (`pricing` to `time`); `catalogue`.

@@ -1,75 +1,73 @@
-//! What a player keeps with a run: calculations for the dashboard, and scripts.
+//! The notebook of a run: named calculations for the dashboard, and scripts.
 //!
-//! Both are names for code: SQL statements, or Python. Nothing of it reaches the world.
+//! Both are SQL statements or Python. They never affect the simulation.
 
 use serde::{Deserialize, Serialize};
 
 use super::refusal::Refusal;
 use novamind_base::notation::grouped;
 
-/// Most scripts of a run, and most calculations.
+/// Maximum number of scripts of a run, and of calculations.
 const MAX_ENTRIES: usize = 100;
-/// Most bytes of the code of one entry.
 const MAX_CODE_BYTES: usize = 256 * 1024;
-/// Most bytes of a name.
 const MAX_NAME_BYTES: usize = 200;
-/// Most bytes of all scripts and calculations of a run together.
+/// Maximum bytes of all scripts and calculations of a run together.
 const MAX_BYTES: usize = 4 * 1024 * 1024;
 
-/// Code of the refusal of what is beyond a quota.
+/// Rejection code of entries beyond a quota.
 pub(super) const QUOTA_EXCEEDED: &str = "quota_exceeded";
 
-/// What is kept.
+/// Section of the notebook.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kept {
-    /// Run before every week; the output stands on the dashboard.
+    /// Code that runs before every week, with its output on the dashboard.
     Calculation,
-    /// Run on request.
+    /// Code that runs on request.
     Script,
 }
 
-/// What a call changes in the notebook.
+/// A change of the notebook.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum NotebookChange {
-    /// Keep statements under a name.
+    /// Store statements under a name.
     Keep {
-        /// As what.
+        /// Section.
         what: Kept,
         /// Name.
         name: String,
         /// Statements.
         code: String,
     },
-    /// Forget a name.
+    /// Remove a name.
     Forget {
-        /// What it was.
+        /// Section.
         what: Kept,
         /// Name.
         name: String,
     },
 }
 
-/// Named statements in the order in which their names were first kept.
+/// Named statements in the order in which their names were first stored.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct NamedStatements(Vec<(String, String)>);
 
 impl NamedStatements {
-    /// The statements of a name.
+    /// Returns the statements of a name.
     pub fn get(&self, name: &str) -> Option<&str> {
         self.0.iter().find(|(own, _)| own == name).map(|(_, code)| code.as_str())
     }
 
-    /// All names.
+    /// Returns all names.
     pub fn names(&self) -> Vec<&str> {
         self.0.iter().map(|(name, _)| name.as_str()).collect()
     }
 
-    /// All names but one.
+    /// Returns all names except one.
     pub fn names_without(&self, name: &str) -> Vec<&str> {
         self.names().into_iter().filter(|own| *own != name).collect()
     }
 
-    /// Names and statements.
+    /// Returns names and statements.
     pub fn entries(&self) -> &[(String, String)] {
         &self.0
     }
@@ -94,12 +92,12 @@ pub struct Notebook {
 }
 
 impl Notebook {
-    /// An empty one.
+    /// Returns an empty notebook.
     pub const fn new() -> Notebook {
         Notebook { calculations: NamedStatements(Vec::new()), scripts: NamedStatements(Vec::new()) }
     }
 
-    /// What is kept of a kind.
+    /// Returns the statements of a section.
     pub fn statements(&self, what: Kept) -> &NamedStatements {
         match what {
             Kept::Calculation => &self.calculations,
@@ -114,11 +112,11 @@ impl Notebook {
         }
     }
 
-    /// Refuses a change beyond the quotas. A session asks for new calls only: a recorded one of an older version is applied
-    /// whatever its size.
+    /// Rejects a change beyond the quotas. A session checks new calls only; recorded calls of older versions are applied at any
+    /// size.
     ///
     /// # Errors
-    /// `quota_exceeded`, stating the limit.
+    /// `quota_exceeded`, with the limit.
     pub fn refuse_beyond_quota(&self, change: &NotebookChange) -> Result<(), Refusal> {
         let NotebookChange::Keep { what, name, code } = change else { return Ok(()) };
         let refused = |field: &str, message: String| {
@@ -161,7 +159,7 @@ impl Notebook {
         Ok(())
     }
 
-    /// Keeps or forgets what a change says.
+    /// Applies a change.
     pub fn apply(&mut self, change: &NotebookChange) {
         match change {
             NotebookChange::Keep { what, name, code } => self.statements_mut(*what).keep(name, code),

@@ -1,11 +1,11 @@
-//! Numbers in documentation: texts name a parameter in braces, and what people read is the value in force.
+//! Numbers in documentation: placeholders in braces name a parameter and are replaced by the value in force.
 //!
-//! `{table.key}` is a value, `{info_level.2.cost}` that of an entry of a list, named by its level, its tier, its id, or else
-//! by its place from 0. After a colon stands how it is written:
+//! `{table.key}` is a value; `{info_level.2.cost}` is that of a list entry, named by its level, tier or id, or else by its
+//! index from 0. A colon introduces the format:
 //!
-//! * `%` a percentage, `100` the same without its sign,
-//! * `$` dollars, `,` with separators of thousands, `-` without its sign, `+1` one more,
-//! * `word` in a word, `tenths` ten times the value in a word with a capital.
+//! * `%` percentage, `100` percentage without the sign,
+//! * `$` dollars, `,` thousands separators, `-` absolute value, `+1` value plus one,
+//! * `word` as a word, `tenths` ten times the value as a capitalized word.
 
 use std::collections::BTreeMap;
 
@@ -14,24 +14,23 @@ use serde_json::Value;
 use novamind_base::notation::{capital, grouped};
 use novamind_world::params::Params;
 
-/// Every number of the parameters, by its key.
+/// All numbers of the parameters, by key.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Numbers(BTreeMap<String, f64>);
 
 impl Numbers {
-    /// The numbers of the shipped parameters.
+    /// Returns the numbers of the bundled parameters.
     pub fn shipped() -> Numbers {
         Numbers::of(&Params::shipped())
     }
 
-    /// The numbers of these parameters.
+    /// Returns the numbers of parameters.
     pub fn of(params: &Params) -> Numbers {
         let mut numbers = Numbers::default();
         numbers.take("", &serde_json::to_value(params).unwrap_or(Value::Null));
         numbers
     }
 
-    /// Takes the numbers of a part of the parameters.
     fn take(&mut self, path: &str, part: &Value) {
         let below = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
         match part {
@@ -49,12 +48,12 @@ impl Numbers {
         }
     }
 
-    /// A number by the key of its parameter; none where there is none.
+    /// Returns a number by the key of its parameter, or `None` if the parameter does not exist.
     pub fn value(&self, key: &str) -> Option<f64> {
         self.0.get(key).copied()
     }
 
-    /// A text with the values in place of their names. A name that no parameter has stays as it is.
+    /// Replaces the placeholders of a text. Unknown names stay unchanged.
     pub fn fill(&self, text: &str) -> String {
         let mut filled = String::new();
         let mut rest = text;
@@ -92,13 +91,13 @@ impl Numbers {
     }
 }
 
-/// What names an entry of a list of tables.
+/// Returns the name of an entry of a list of tables.
 fn name_of(entry: &Value) -> Option<String> {
     let own = ["level", "tier", "id"].into_iter().find_map(|key| entry.get(key))?;
     Some(own.as_str().map_or_else(|| own.to_string(), str::to_owned))
 }
 
-/// A small whole number in a word, others in digits.
+/// Formats a small whole number as a word, others in digits.
 fn word(value: f64) -> String {
     const WORDS: [&str; 13] = [
         "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven",
@@ -108,13 +107,13 @@ fn word(value: f64) -> String {
     digits.parse::<usize>().ok().and_then(|whole| WORDS.get(whole)).map_or(digits, |word| (*word).to_owned())
 }
 
-/// A number with as many decimals as it has, at most six.
+/// Formats a number with at most six decimals, without trailing zeros.
 fn plain(value: f64) -> String {
     let text = format!("{value:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Names in braces that a text holds.
+/// Returns the placeholders of a text.
 #[cfg(test)]
 pub fn names_in(text: &str) -> Vec<String> {
     let pieces = text.split('{').skip(1).filter_map(|piece| piece.split_once('}'));
@@ -140,7 +139,6 @@ mod tests {
         assert_eq!(numbers.fill("{enterprise.late_reply_relationship_delta_per_day:-}"), "0.02");
     }
 
-    /// Every text of a tool.
     fn texts(spec: &'static Spec) -> impl Iterator<Item = &'static str> {
         let arguments = spec.arguments.iter().map(|argument| argument.doc);
         let returns = spec.returns.iter().flat_map(|output| [output.kind, output.doc]);
@@ -158,8 +156,8 @@ mod tests {
         }
     }
 
-    /// Texts that hold typed digits: labels, bounds that the tool itself sets, and forms of formulas. What a parameter
-    /// says is no such text.
+    /// Digits that texts may contain: labels, limits that the tool itself defines, and parts of formulas. Values of parameters
+    /// must be placeholders.
     const TYPED: [(&str, &[&str]); 13] = [
         ("set_ads_strength", &["0 to 1", "(1 + "]),
         ("set_targeted_dev_spend", &["ln(1 + spend"]),
@@ -172,7 +170,7 @@ mod tests {
             "research_group",
             &["S1", "Level 2 takes", "3 takes", "4 takes", "5 takes", "level 2", "for 3", "for 4", "for 5"],
         ),
-        ("get_group_insights", &["S1", "level of knowledge, 1", "0 to 1"]),
+        ("get_group_insights", &["S1", "study level, 1", "0 to 1"]),
         ("set_capacity_tier", &["0 to 7"]),
         ("python_exec", &["600 if left out", "0: the", "first 5,000", "first 2,000"]),
         ("run_script", &["0: the", "first 5,000", "first 2,000"]),
@@ -217,7 +215,7 @@ mod tests {
             "Level 2 takes 3 days, 3 takes 5, 4 takes 7, 5 takes 10; the errors are at most 40, 25, 15 and 5 %."
         ));
         assert!(shipped.fill(study.arguments[1].doc).starts_with("level 2 to 5; if left out"));
-        assert_eq!(shipped.fill(find.cost), "$25,000 an attempt, at once");
+        assert_eq!(shipped.fill(find.cost), "$25,000 per attempt, at once");
         assert!(shipped.fill(find.effect).starts_with("Three attempts in ten find"));
         assert_eq!(shipped.fill(post.arguments[0].doc), "the text, 1 to 280 characters");
         assert!(shipped.fill(post.effect).contains("half as many every three days"));

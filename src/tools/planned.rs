@@ -1,4 +1,4 @@
-//! What a call would do, and what it says once chance has been resolved.
+//! Planned calls: their effects and their results, before random draws.
 
 use serde::Serialize;
 use serde_json::Value;
@@ -8,28 +8,28 @@ use super::refusal::Refusal;
 use novamind_world::command::{Command, ResolvedCommand};
 use novamind_world::settings::SettingsChange;
 
-/// An accepted call that has not happened yet.
+/// An accepted call that is not applied yet.
 pub struct Planned<A> {
-    /// What it does to the world.
+    /// Command for the simulator.
     pub command: Command,
-    /// What it keeps or forgets with the run.
+    /// Change of the notebook.
     pub change: Option<NotebookChange>,
-    /// The settings family as its row shows it, where that is not the family itself.
+    /// Row of the settings in the database, if it differs from the settings.
     pub row: Option<Value>,
-    /// What it says.
+    /// Result.
     pub reply: Reply<A>,
 }
 
-/// Makes an answer from what was drawn; none if the command is another one's.
+/// Builds a result from the resolved command; `None` for a command of another kind.
 type Teller<A> = Box<dyn FnOnce(&ResolvedCommand) -> Option<A>>;
 
-/// What a call says.
+/// Result of a planned call.
 pub enum Reply<A> {
-    /// No chance is involved.
+    /// A result without random draws.
     Known(A),
-    /// Made from what was drawn.
+    /// A result from the random draws of the command.
     Drawn(Teller<A>),
-    /// Made from what a script says that the session runs.
+    /// A result from the output of a script that the session runs.
     Output(Script, Box<dyn FnOnce(ScriptOutput) -> A>),
 }
 
@@ -38,16 +38,16 @@ pub enum Reply<A> {
 pub struct Script {
     /// Statements, or Python.
     pub code: String,
-    /// Time for all of it, seconds.
+    /// Time limit of the whole script, seconds.
     pub seconds: f64,
 }
 
-/// What a script said.
+/// Output of a script.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct ScriptOutput {
-    /// 0: it ran to its end.
+    /// 0 if it ran to its end.
     pub returncode: i32,
-    /// The results as tables, or what was printed.
+    /// Results as tables, or printed text.
     pub stdout: String,
     /// Warnings and hints.
     pub stderr: String,
@@ -58,22 +58,22 @@ impl<A> Planned<A> {
         Planned { command, change: None, row: None, reply }
     }
 
-    /// A call that only answers.
+    /// Returns a call without effects.
     pub fn reading(answer: A) -> Planned<A> {
         Planned::new(Command::None, Reply::Known(answer))
     }
 
-    /// A call that does what needs no chance.
+    /// Returns a call with a command without random draws.
     pub fn doing(command: Command, answer: A) -> Planned<A> {
         Planned::new(command, Reply::Known(answer))
     }
 
-    /// A call that leaves a settings family.
+    /// Returns a call that changes settings.
     pub fn setting(change: SettingsChange, answer: A) -> Planned<A> {
         Planned::doing(Command::Set(change), answer)
     }
 
-    /// A call whose answer is made from what its command draws.
+    /// Returns a call whose result depends on the random draws of its command.
     pub fn drawing(
         command: Command,
         answer: impl FnOnce(&ResolvedCommand) -> Option<A> + 'static,
@@ -81,26 +81,26 @@ impl<A> Planned<A> {
         Planned::new(command, Reply::Drawn(Box::new(answer)))
     }
 
-    /// A call that keeps or forgets something with the run.
+    /// Returns a call that changes the notebook.
     pub fn keeping(change: NotebookChange, answer: A) -> Planned<A> {
         Planned { change: Some(change), ..Planned::reading(answer) }
     }
 
-    /// The same call with its own row of settings.
+    /// Sets the row of the settings in the database.
     pub fn with_row(self, row: Value) -> Planned<A> {
         Planned { row: Some(row), ..self }
     }
 }
 
 impl Planned<ScriptOutput> {
-    /// A call that runs a script.
+    /// Returns a call that runs a script.
     pub fn running(script: Script) -> Planned<ScriptOutput> {
         Planned::new(Command::None, Reply::Output(script, Box::new(|output| output)))
     }
 }
 
 impl<A: 'static> Planned<A> {
-    /// The same call with its answer in another type.
+    /// Converts the type of the result.
     pub(super) fn map<B: 'static>(self, convert: fn(A) -> B) -> Planned<B> {
         let Planned { command, change, row, reply } = self;
         let reply = match reply {
@@ -115,10 +115,10 @@ impl<A: 'static> Planned<A> {
 }
 
 impl<A> Reply<A> {
-    /// The answer, given what was drawn and somebody who runs scripts.
+    /// Returns the result for a resolved command. `run` runs the script, if there is one.
     ///
     /// # Errors
-    /// What speaks against the script.
+    /// The rejection of the script.
     pub fn tell(
         self,
         resolved: &ResolvedCommand,
@@ -126,12 +126,14 @@ impl<A> Reply<A> {
     ) -> Result<A, Refusal> {
         match self {
             Reply::Known(answer) => Ok(answer),
-            Reply::Drawn(answer) => Ok(answer(resolved).expect("a command is resolved as what it is")),
+            Reply::Drawn(answer) => {
+                Ok(answer(resolved).expect("a resolved command has the kind of its command"))
+            }
             Reply::Output(script, answer) => run(&script).map(answer),
         }
     }
 
-    /// The answer, where no script is run for it.
+    /// Returns the result if it needs no script.
     pub fn without_running(self, resolved: &ResolvedCommand) -> Option<A> {
         let refuse = |_: &Script| Err(Refusal::new("script_failed", "scripts are not run here"));
         self.tell(resolved, refuse).ok()

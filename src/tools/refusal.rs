@@ -1,31 +1,31 @@
-//! The only way in which the game says no.
+//! Rejections of tool calls.
 
 use std::fmt;
 
 use serde::Serialize;
 
-/// A refused call: nothing was changed.
+/// A rejected call, which has changed nothing.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Refusal {
     /// Code, for programs.
     pub code: &'static str,
-    /// What is wrong and what would be right, for people.
+    /// Message with the error and the valid values.
     pub message: String,
-    /// Path of the argument at fault, for instance `targeted_spend.linkedin.E9`.
+    /// Path of the invalid argument, for example `targeted_spend.linkedin.E9`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub field: Option<String>,
-    /// Of a call with several deals, all refused: what is wrong with each.
+    /// Reasons for each deal, if a call has several deals and all were rejected.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub results: Vec<DealResult>,
 }
 
 impl Refusal {
-    /// A refusal that blames no single argument.
+    /// Returns a rejection without an argument.
     pub fn new(code: &'static str, message: impl Into<String>) -> Refusal {
         Refusal { code, message: message.into(), field: None, results: Vec::new() }
     }
 
-    /// A refusal that blames an argument.
+    /// Returns a rejection of an argument.
     pub fn at(field: impl Into<String>, code: &'static str, message: impl Into<String>) -> Refusal {
         Refusal { code, message: message.into(), field: Some(field.into()), results: Vec::new() }
     }
@@ -42,36 +42,36 @@ impl fmt::Display for Refusal {
 
 impl std::error::Error for Refusal {}
 
-/// What became of each deal of a call: what could not be read first, then the rest in the order of the call.
+/// Results of the deals of a call: first those that could not be parsed, then the others in the order of the call.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct DealResults {
     /// One entry per deal.
     pub results: Vec<DealResult>,
 }
 
-/// What became of a deal.
+/// Result of a deal.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[serde(untagged)]
 pub enum DealResult {
-    /// It was sent, or the thread ended.
+    /// The offer was sent, or the thread ended.
     Done {
-        /// The company.
+        /// Customer.
         customer_id: u32,
         /// Always true.
         success: bool,
     },
-    /// It was not.
+    /// The deal failed.
     Failed {
-        /// The customer, where the deal names one.
+        /// Customer, if the deal names one.
         #[serde(skip_serializing_if = "Option::is_none")]
         customer_id: Option<i64>,
-        /// Why.
+        /// Reason.
         error: String,
     },
 }
 
 impl DealResult {
-    /// The company of a deal that was sent.
+    /// Returns the customer of a deal that was sent.
     pub fn done(&self) -> Option<u32> {
         match self {
             DealResult::Done { customer_id, .. } => Some(*customer_id),

@@ -1,84 +1,83 @@
-//! What a tool is, as data: the single source for its form, its command, its route, its documentation and the
-//! check of its arguments.
+//! The specification of a tool, from which its form, command, route, documentation and argument checks are derived.
 
 use super::tool_id::ToolId;
 use novamind_base::notation::grouped;
 
-/// Most dollars of a price, a discount or a daily budget.
+/// Maximum of a price, a discount or a daily budget, in dollars.
 pub const MOST_DOLLARS: f64 = 1e9;
-/// Most units a day of a quota.
+/// Maximum of a quota, in units per day.
 pub const MOST_UNITS: f64 = 1e15;
 
-/// Everything there is to know about a tool but its code.
+/// The specification of a tool.
 #[derive(Debug)]
 pub struct Spec {
-    /// Which one.
+    /// Identifier.
     pub id: ToolId,
-    /// Three to five capitals by which it is found at once, for instance `PRC`.
+    /// Short code of three to five capitals, for example `PRC`.
     pub code: &'static str,
-    /// Module of the client library it belongs to.
+    /// Module of the client library.
     pub module: Module,
-    /// What calling it means.
+    /// Kind.
     pub kind: Kind,
-    /// One line.
+    /// Summary in one line.
     pub summary: &'static str,
     /// Arguments, in the order in which they are checked.
     pub arguments: &'static [Argument],
-    /// Unknown arguments have a code of the tool's own.
+    /// Whether the tool has its own rejection code for unknown arguments.
     pub own_unknown: bool,
-    /// The argument that a call without its name gives as a whole, for instance the matrix of ad spend.
+    /// The argument that a call can give without its name, for example the matrix of ad spend.
     pub whole: Option<&'static str>,
-    /// When the effect is felt.
+    /// Time of the effect.
     pub when: When,
-    /// What the effect is.
+    /// Effect.
     pub effect: &'static str,
-    /// What it costs.
+    /// Cost.
     pub cost: &'static str,
-    /// Tables it writes.
+    /// Tables that it writes.
     pub writes: &'static [&'static str],
-    /// Codes of its refusals, in the order of its checks.
+    /// Rejection codes, in the order of its checks.
     pub refusals: &'static [&'static str],
-    /// Fields of its result.
+    /// Fields of the result.
     pub returns: &'static [Output],
     /// Arguments of an example, as JSON.
     pub example: &'static str,
 }
 
-/// Modules of the tools.
+/// Modules of the client library.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Module {
     /// Prices, tiers, quotas, discounts.
     Pricing,
-    /// Spend, ads, posts.
+    /// Budgets, advertising, posts.
     Marketing,
-    /// Targeted spend and readings.
+    /// Targeted budgets and posts of others.
     Analytics,
     /// R&D.
     Research,
-    /// Finding and studying groups.
+    /// Discovery and market studies.
     Market,
     /// Capacity and costs.
     Infrastructure,
-    /// Companies.
+    /// Negotiations with enterprises.
     Enterprise,
     /// Time and data.
     Time,
 }
 
 impl Spec {
-    /// Name as calls write it, for instance `set_prices`.
+    /// Returns the name, for example `set_prices`.
     pub fn name(&self) -> &'static str {
         self.id.name()
     }
 
-    /// Whether missing arguments have a code of the tool's own.
+    /// Returns whether the tool has its own rejection code for missing arguments.
     pub fn own_missing(&self) -> bool {
         self.refusals.iter().any(|code| code.ends_with("_missing"))
     }
 }
 
 impl Module {
-    /// All modules in the order in which they are shown.
+    /// All modules, in display order.
     pub const ALL: [Module; 8] = [
         Module::Pricing,
         Module::Marketing,
@@ -90,7 +89,7 @@ impl Module {
         Module::Time,
     ];
 
-    /// Name as calls write it.
+    /// Returns the name.
     pub fn id(self) -> &'static str {
         match self {
             Module::Pricing => "pricing",
@@ -105,10 +104,10 @@ impl Module {
     }
 }
 
-/// What calling a tool means.
+/// Kinds of tools.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// Changes what holds from the next day on.
+    /// Changes a setting from the next day on.
     Setting,
     /// Spends money at once.
     Purchase,
@@ -116,19 +115,19 @@ pub enum Kind {
     OneShot,
     /// Reads.
     Read,
-    /// Lets time pass.
+    /// Advances the simulation.
     Time,
-    /// Works on what is kept with the run, never on the company.
+    /// Works on the notebook and the documentation, never on the company.
     Engine,
 }
 
 impl Kind {
-    /// Whether a call can change the company.
+    /// Returns whether a call can change the company.
     pub fn acts(self) -> bool {
         !matches!(self, Kind::Read | Kind::Engine)
     }
 
-    /// Word for documentation.
+    /// Returns the name in documentation.
     pub fn id(self) -> &'static str {
         match self {
             Kind::Setting => "setting",
@@ -141,7 +140,7 @@ impl Kind {
     }
 }
 
-/// When the effect of a tool is felt.
+/// Time of the effect of a tool.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum When {
     /// From the next simulated day on.
@@ -150,16 +149,16 @@ pub enum When {
     NextBilling,
     /// At once.
     Now,
-    /// After a delay that the answer states.
+    /// After a delay, which the result states.
     AtCompletion,
-    /// When the customer answers.
+    /// When the customer replies.
     CustomerReply,
-    /// It changes nothing.
+    /// No effect.
     Never,
 }
 
 impl When {
-    /// Word for documentation.
+    /// Returns the name in documentation.
     pub fn id(self) -> &'static str {
         match self {
             When::NextDay => "next day",
@@ -177,30 +176,30 @@ impl When {
 pub struct Argument {
     /// Name.
     pub name: &'static str,
-    /// A second name that older callers use.
+    /// Second name, for older callers.
     pub alias: Option<&'static str>,
-    /// What it holds.
+    /// Type.
     pub kind: ArgumentKind,
-    /// Its absence is refused: as `argument_missing`, or by a code of the tool's own.
+    /// Whether a call without it is rejected, as `argument_missing` or with the tool's own code.
     pub required: bool,
     /// Unit of its numbers.
     pub unit: &'static str,
-    /// What it means.
+    /// Meaning.
     pub doc: &'static str,
 }
 
-/// What an argument holds.
+/// Type of an argument.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ArgumentKind {
     /// A number.
     Number(Range),
-    /// A whole number.
+    /// An integer.
     Integer(Range),
     /// Text.
     Text,
-    /// A list or an object of another shape, described in words.
+    /// Another list or object, with a description.
     Structure(&'static str),
-    /// A list of deals with prices, described in words.
+    /// A list of deals with prices, with a description.
     Deals(&'static str),
     /// A map from a key to a number.
     Map(Key, Range),
@@ -209,7 +208,7 @@ pub enum ArgumentKind {
 }
 
 impl ArgumentKind {
-    /// The kind in words, for instance `map channel -> map group -> number, >= 0`.
+    /// Returns a description, for example `map channel -> map group -> number, >= 0`.
     pub fn words(&self) -> String {
         match self {
             ArgumentKind::Number(range) => format!("number, {}", range.whole_words()),
@@ -228,13 +227,13 @@ impl ArgumentKind {
 /// Allowed numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
-    /// Least value.
+    /// Minimum.
     pub least: f64,
-    /// Whether the least value itself is excluded.
+    /// Whether the minimum itself is excluded.
     pub above: bool,
-    /// Greatest value.
+    /// Maximum.
     pub most: f64,
-    /// Size up to which numbers are taken, so that sums stay numbers.
+    /// Maximum magnitude, which keeps sums exact.
     pub bound: f64,
 }
 
@@ -249,24 +248,24 @@ impl Range {
     /// Numbers from 0 to 1.
     pub const SHARE: Range = Range::between(0.0, 1.0);
 
-    /// Whole numbers from one to another.
+    /// Returns the range from `least` to `most`, inclusive.
     pub const fn between(least: f64, most: f64) -> Range {
         Range { least, above: false, most, bound: f64::INFINITY }
     }
 
-    /// Whether a number is allowed.
+    /// Returns whether a number is in the range.
     pub fn holds(&self, value: f64) -> bool {
         value.is_finite()
             && value <= self.most
             && if self.above { value > self.least } else { value >= self.least }
     }
 
-    /// Whether a number is not too large.
+    /// Returns whether a number is within the maximum magnitude.
     pub fn fits(&self, value: f64) -> bool {
         value.abs() <= self.bound
     }
 
-    /// The range in words with the size up to which numbers are taken.
+    /// Returns a description with the maximum magnitude.
     pub fn whole_words(&self) -> String {
         match self.bound.is_finite() {
             true => format!("{}, at most {}", self.words(), grouped(self.bound, 0)),
@@ -274,7 +273,7 @@ impl Range {
         }
     }
 
-    /// The range in words, for instance `> 0`, `0 to 7`, `any`.
+    /// Returns a description, for example `> 0`, `0 to 7`, `any`.
     pub fn words(&self) -> String {
         match (self.above, self.most.is_finite()) {
             _ if self.least.is_infinite() => "any".to_owned(),
@@ -286,7 +285,7 @@ impl Range {
     }
 }
 
-/// What the keys of a map are.
+/// Kind of the keys of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Key {
     /// Known groups.
@@ -300,7 +299,7 @@ pub enum Key {
 }
 
 impl Key {
-    /// Word for documentation.
+    /// Returns the name in documentation.
     pub fn id(self) -> &'static str {
         match self {
             Key::Group => "group",
@@ -311,7 +310,7 @@ impl Key {
     }
 }
 
-/// Kind of a field that holds a remark of the program: its words can change from version to version.
+/// Type of a result field with a remark, whose wording can change between versions.
 pub const REMARK: &str = "remark";
 
 /// One field of a result.
@@ -319,7 +318,7 @@ pub const REMARK: &str = "remark";
 pub struct Output {
     /// Name.
     pub name: &'static str,
-    /// Type in words, for instance `map plan -> number`.
+    /// Description of the type, for example `map plan -> number`.
     pub kind: &'static str,
     /// Unit or meaning.
     pub doc: &'static str,

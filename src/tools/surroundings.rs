@@ -1,48 +1,48 @@
-//! What a tool may look at besides the company: words, the documents of the tables, what is kept with the run.
+//! Data of the session that tools read: descriptions of the economy, documentation of the tables, and the notebook.
 //!
-//! The session brings them, for neither the words nor the database are a tool's business.
+//! The session provides them, so that this crate needs neither the voice nor the database.
 
 use super::notebook::Notebook;
 use novamind_world::events::Reading;
 
-/// The surroundings of a company.
+/// Data of a session for tools.
 pub trait Surroundings: Sync {
-    /// Words for a reading of the economy.
+    /// Returns the description of a reading of the economy.
     fn describe(&self, reading: &Reading) -> String;
 
-    /// The tables that can be asked, with their columns.
+    /// Returns the tables that can be queried, with their columns.
     fn tables(&self) -> Vec<TableDocument>;
 
-    /// Calculations and scripts of the run.
+    /// Returns the calculations and scripts of the run.
     fn notebook(&self) -> &Notebook;
 }
 
-/// A visible table, as documentation tells of it.
+/// Documentation of a visible table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TableDocument {
     /// Name.
     pub name: &'static str,
-    /// What its rows are.
+    /// Description of the rows.
     pub description: &'static str,
-    /// Its columns.
+    /// Columns.
     pub columns: Vec<ColumnDocument>,
 }
 
-/// A visible column, as documentation tells of it.
+/// Documentation of a visible column.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ColumnDocument {
     /// Name.
     pub name: &'static str,
     /// Declared type.
     pub kind: &'static str,
-    /// All values it can have, where that is a short list.
+    /// All possible values, if they are few.
     pub values: &'static [String],
-    /// What it holds.
+    /// Description.
     pub description: &'static str,
 }
 
 impl ColumnDocument {
-    /// Type, values and meaning in a line: `TEXT, one of 'open', 'resolved': how it stands`.
+    /// Returns type, values and meaning in one line: `TEXT, one of 'open', 'resolved': status`.
     pub fn line(&self) -> String {
         let values: Vec<String> = self.values.iter().map(|value| format!("'{value}'")).collect();
         let values =
@@ -51,7 +51,7 @@ impl ColumnDocument {
     }
 }
 
-/// A company alone: no words, no tables, nothing kept.
+/// Empty data: no descriptions, no tables, an empty notebook.
 pub struct Nothing;
 
 static EMPTY: Notebook = Notebook::new();

@@ -1,4 +1,4 @@
-//! Every refusal and result of these tools, against a fresh world.
+//! Tests of every rejection and result of the tools, with a new company.
 
 mod engine;
 mod market;
@@ -13,7 +13,6 @@ use novamind_world::params::Params;
 use novamind_world::random::Streams;
 use novamind_world::state::World;
 
-/// A company that tools are called on.
 struct Company {
     params: Params,
     streams: Streams,
@@ -46,17 +45,17 @@ impl Company {
             .unwrap_or_else(|refusal| panic!("{name} {arguments}: {refusal}"))
     }
 
-    /// Code and field of a refusal; nothing may have changed.
+    /// Returns code and field of a rejection, and checks that nothing has changed.
     fn refused(&mut self, name: &str, arguments: Value) -> (&'static str, Option<String>) {
         let before = self.world.part_hashes();
         let refusal =
-            self.try_call(name, arguments.clone()).expect_err(&format!("{name} {arguments} is wrong"));
+            self.try_call(name, arguments.clone()).expect_err(&format!("{name} {arguments} is invalid"));
         assert_eq!(self.world.part_hashes(), before, "{name} {arguments} changed something");
         assert!(!refusal.message.is_empty());
         (refusal.code, refusal.field)
     }
 
-    /// What a refused call says of each deal.
+    /// Returns the results of each deal of a rejected call.
     fn refused_results(&mut self, name: &str, arguments: Value) -> Value {
         let refusal = self.try_call(name, arguments).expect_err("a refusal");
         serde_json::to_value(refusal.results).expect("results are JSON")
@@ -170,7 +169,7 @@ fn set_promotion() {
             (json!({"by_group_plan": {"S1": {"A": 1e300}}}), "amount_too_large", "by_group_plan.S1.A"),
         ],
     );
-    // An empty map clears its own scope and no other.
+    // An empty map clears its scope only.
     let all = json!({
         "global_promotion": 5,
         "by_group": {"S1": 2},
@@ -239,7 +238,7 @@ fn set_targeted_ad_spend() {
             (json!({"linkedin": {"E1": 1e308}}), "amount_too_large", "targeted_spend.linkedin.E1"),
         ],
     );
-    // A matrix of groups is turned round; a group without channels says nothing.
+    // A matrix by groups is transposed; a group without channels is dropped.
     let turned =
         json!({"targeted_spend": {"E1": {"linkedin": 200, "search_ads": 50}, "S1": {"linkedin": 20}}});
     let data = company.call("set_targeted_ad_spend", turned);
@@ -265,7 +264,7 @@ fn set_ads_strength() {
             (json!({"by_customer": {"5.5": 0.1}}), "customer_not_integer", "by_customer.5.5"),
         ],
     );
-    // Nothing is applied when a later scope is wrong.
+    // Nothing is applied if a later scope is invalid.
     let wrong = json!({"global_strength": 0.4, "by_group": {"S2": 0.1}, "by_customer": {"5": 3}});
     assert_eq!(company.refused("set_ads_strength", wrong).0, "strength_out_of_range");
     let data =
@@ -307,13 +306,13 @@ fn set_targeted_ops_spend() {
             (json!({"by_plan": {"D": 4}}), "unknown_plan", "by_plan.D"),
             (json!({"by_group_plan": {"S1": {"A": -4}}}), "amount_invalid", "by_group_plan.S1.A"),
             (json!({"by_customer": {"x": 4}}), "customer_not_integer", "by_customer.x"),
-            // The first scope stays as it was, which the sums below show.
+            // The first scope does not change, as the sums below show.
             (json!({"by_group": {"S2": 9}, "by_plan": {"D": 1}}), "unknown_plan", "by_plan.D"),
             (json!({"by_customer": {"7": 1e10}}), "amount_too_large", "by_customer.7"),
             (json!({"targeted_spend": {"S1": 1e10}}), "amount_too_large", "targeted_spend.S1"),
         ],
     );
-    // Every scope is a pool of its own, kept until it is named again.
+    // Every scope is a separate budget, which stays until a call sets it again.
     company.call("set_targeted_ops_spend", json!({"E1": 30, "S1": 20}));
     company.call("set_targeted_ops_spend", json!({"by_plan": {"A": 10}}));
     company.call("set_targeted_ops_spend", json!({"by_group_plan": {"S1": {"A": 5}}}));
@@ -359,7 +358,7 @@ fn start_research_project() {
             (json!({"tier": 20}), "insufficient_funds", ""),
         ],
     );
-    // The price is paid at once, and the refusals above cost nothing.
+    // The price is paid at once, and the rejections above cost nothing.
     assert_eq!(company.world.finance.cash, 833_333.0);
     let project = company.world.product.research[0];
     assert!(project.due_day >= 30);
@@ -422,7 +421,7 @@ fn set_capacity_tier() {
     }
 }
 
-/// A company with two leads (customers 2 and 3), a subscriber (4), an individual (5), a lost lead (6).
+/// Returns a company with two leads (customers 2 and 3), a subscriber (4), an individual (5), and a lost lead (6).
 fn with_companies() -> Company {
     use novamind_world::enterprise::Standing;
     use novamind_world::test_kit::company_of;
@@ -474,7 +473,7 @@ fn send_enterprise_deal() {
             (deal(json!([[5, [["B", 5]]]])), "not_enterprise", "deals.0.customer_id"),
             (deal(json!([[1, [["B", 5]]]])), "not_enterprise", "deals.0.customer_id"),
             (deal(json!([[6, [["B", 5]]]])), "no_subscription", "deals.0.customer_id"),
-            // Numbers that are none stop the whole call, whatever else it holds.
+            // Invalid numbers reject the whole call.
             (
                 deal(json!([[2, [["B", 5]]], [3, [["B", "abc"]]]])),
                 "wrong_type",
@@ -484,7 +483,7 @@ fn send_enterprise_deal() {
             (deal(json!([["two", [["B", 5]]]])), "wrong_type", "deals.0.customer_id"),
             (deal(json!([[true, [["B", 5]]]])), "wrong_type", "deals.0.customer_id"),
             (deal(json!([[2, [["B", "inf"]]]])), "wrong_type", "deals.0.offerings.0.price_per_seat"),
-            // Of several that all fail, the first one speaks.
+            // If all deals fail, the first one determines the rejection.
             (deal(json!([[99, [["B", 5]]], [2, []]])), "customer_not_found", "deals.0.customer_id"),
             (deal(json!([[4_000_000_000u64, [["B", 5]]]])), "customer_not_found", "deals.0.customer_id"),
             (deal(json!([[2, [["B", 5], ["C", 1e308]]]])), "amount_too_large", "deals.0.1.1.1"),
@@ -511,12 +510,12 @@ fn a_call_of_which_no_deal_is_sent_says_why_for_each() {
     let deals = json!({"deals": [77, "x"]});
     let told = json!([{"error": "invalid format"}, {"customer_id": 77, "error": "no active thread"}]);
     assert_eq!(company.refused_results("reject_enterprise_deal", deals), told);
-    // What concerns the call and none of its deals has no results.
+    // A rejection of the whole call has no results.
     let none = json!({"deals": []});
     assert_eq!(company.refused_results("send_enterprise_deal", none), json!([]));
 }
 
-/// Offerings of the newest turn of a customer's open thread.
+/// Returns the offerings of the latest turn of a customer's open thread.
 fn offered(company: &Company, customer: u32) -> Vec<(&'static str, f64)> {
     let thread = company.world.enterprise.open_threads().newest(customer).expect("an open thread");
     thread.offerings().iter().map(|offering| (offering.plan.id(), offering.price)).collect()
@@ -596,7 +595,7 @@ fn reject_enterprise_deal() {
         {"customer_id": 3, "success": true},
     ]});
     assert_eq!(data, expected);
-    // A rejected lead never comes back; a subscriber stays one.
+    // A rejected lead is lost; a subscriber keeps the subscription.
     let again = company.refused("send_enterprise_deal", json!({"deals": [[2, [["B", 5]]]]}));
     assert_eq!(again.0, "no_subscription");
     company.call("send_enterprise_deal", json!({"deals": [[4, [["B", 9]]]]}));

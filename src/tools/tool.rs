@@ -1,4 +1,4 @@
-//! What a tool does: reads its arguments, and plans what a call would change and answer.
+//! The trait of tools.
 
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -10,30 +10,30 @@ use super::spec::Spec;
 use super::view::View;
 use novamind_world::settings::Settings;
 
-/// An action or reading of the player.
+/// A tool of the player.
 pub trait Tool: Sync {
-    /// Its arguments, read and checked.
+    /// Parsed and checked arguments.
     type Args;
-    /// What it answers; its JSON is the data of the answer.
+    /// Result; its JSON is the data of the response.
     type Answer: Serialize;
 
-    /// Everything there is to know about it.
+    /// Returns the specification.
     fn spec(&self) -> &'static Spec;
 
-    /// The present values of its arguments, as a call would send them; empty where there are none.
+    /// Returns the current values of the arguments in the notation of a call; empty for tools without settings.
     fn current(&self, _settings: &Settings) -> Map<String, Value> {
         Map::new()
     }
 
-    /// Reads the arguments of a call.
+    /// Parses the arguments of a call.
     ///
     /// # Errors
-    /// The first refusals that its [`Spec`] lists: what a look at the arguments, and at what the player knows, shows.
+    /// The first rejections that its [`Spec`] lists: those that follow from the arguments and the player's knowledge.
     fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<Self::Args, Refusal>;
 
-    /// What a call with these arguments would do and say.
+    /// Returns the effect and the result of a call with these arguments.
     ///
     /// # Errors
-    /// The other refusals, in the order of its checks.
+    /// The other rejections, in the order of its checks.
     fn plan(&self, view: &View<'_>, args: Self::Args) -> Result<Planned<Self::Answer>, Refusal>;
 }

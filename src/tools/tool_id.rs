@@ -1,9 +1,9 @@
-//! The list of all tools by name: the identifiers here and the catalogue are built from it.
+//! The list of all tools, from which the identifiers and the catalogue are built.
 
 use serde::{Deserialize, Serialize};
 use strum::{AsRefStr, Display, EnumString, IntoStaticStr};
 
-/// Calls a macro with the types of all tools, in the order in which they are shown.
+/// Calls a macro with the types of all tools, in display order.
 macro_rules! each_tool {
     ($macro:ident) => {
         $macro! {
@@ -50,7 +50,7 @@ pub(super) use each_tool;
 
 macro_rules! identifiers {
     ($($tool:ident),* $(,)?) => {
-        /// A tool. Calls and records write it as its name: `set_prices`.
+        /// A tool. Its serialized form is its name, for example `set_prices`.
         #[derive(
             Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, AsRefStr, Display,
             EnumString, IntoStaticStr,
@@ -67,7 +67,7 @@ macro_rules! identifiers {
 each_tool!(identifiers);
 
 impl ToolId {
-    /// Its name, as calls write it.
+    /// Returns the name.
     pub fn name(self) -> &'static str {
         self.into()
     }

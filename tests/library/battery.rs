@@ -1,6 +1,6 @@
-//! Hundreds of statements as agents write them, asked of a company and of ordinary tables with the same rows.
+//! Hundreds of typical statements of agents, compared between the database of a company and ordinary tables with the same rows.
 //!
-//! How long they take with 190,000 subscribers is printed, not judged:
+//! Durations with 190,000 subscribers are printed, not checked:
 //! `cargo test --release --test library -- battery --ignored --nocapture`
 
 use std::cmp::Reverse;
@@ -19,13 +19,11 @@ use serde_json::{Value, json};
 
 use crate::support::company::call;
 
-/// No clock decides here: a statement that goes through a table for every row of another has too many steps.
+/// A limit of steps instead of time: nested scans exceed it.
 const LIMITS: Limits = Limits { rows: 5000, time: Duration::from_secs(3600), steps: Some(6_000_000) };
 
-/// For the copy of all rows.
 const EVERYTHING: Limits = Limits { rows: usize::MAX, steps: None, ..LIMITS };
 
-/// The statements with the headings they stand under.
 fn battery() -> Vec<(&'static str, &'static str)> {
     let mut heading = "";
     let mut statements = Vec::new();
@@ -39,7 +37,7 @@ fn battery() -> Vec<(&'static str, &'static str)> {
     statements
 }
 
-/// A company that does a little of everything for nine weeks.
+/// Returns a company that uses every mechanism within nine weeks.
 fn company() -> Session {
     let overrides = vec![("market_research.market_research_discover_prob".to_owned(), "0.5".to_owned())];
     let cash = Some(20_000_000.0);
@@ -91,7 +89,7 @@ fn week(session: &mut Session, at: u32) {
     session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
 }
 
-/// Answers most threads with what was asked, ends some, and leaves some alone.
+/// Accepts the requests of most threads, ends some, and ignores some.
 fn answer(session: &mut Session) {
     let waiting = session.company().observe().waiting;
     let offer = |thread: &WaitingThread| {
@@ -110,7 +108,7 @@ fn answer(session: &mut Session) {
     }
 }
 
-/// Ordinary tables, declared as the released simulator declares them, with the rows of a company.
+/// Returns ordinary tables with the schema of the released simulator and the rows of a company.
 fn plain_tables(connection: &QueryConnection) -> Connection {
     let mut plain = Connection::open_in_memory().expect("memory");
     register_mathematics(&plain).expect("functions");
@@ -126,7 +124,7 @@ fn plain_tables(connection: &QueryConnection) -> Connection {
         for row in &all.rows {
             insert.execute(rusqlite::params_from_iter(row.iter().map(stored))).expect("a row");
         }
-        assert!(!all.rows.is_empty(), "{} is empty: the company does too little", table.name);
+        assert!(!all.rows.is_empty(), "{} is empty: the company must use every mechanism", table.name);
     }
     for table in ["daily_usage", "ads_revenue", "subscriptions", "issues", "enterprise_turns"] {
         let index = format!("CREATE INDEX {table}_of_customers ON {table} (customer_id)");
@@ -162,12 +160,11 @@ fn ask_plainly(plain: &Connection, sql: &str) -> Rows {
     Rows { columns, rows: rows.unwrap_or_else(|error| panic!("{sql}: {error}")), ..Rows::default() }
 }
 
-/// Whether a statement says in which order its rows come.
+/// Returns whether a statement defines the order of its rows.
 fn is_ordered(sql: &str) -> bool {
     sql.rfind("ORDER BY").is_some_and(|at| sql[at..].matches(')').count() <= sql[at..].matches('(').count())
 }
 
-/// What differs between two answers to a statement.
 fn difference(sql: &str, own: &Rows, plain: &Rows) -> Option<String> {
     let sorted = |rows: &Rows| {
         let mut rows: Vec<String> = rows.rows.iter().map(|row| format!("{row:?}")).collect();

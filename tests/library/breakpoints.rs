@@ -1,4 +1,4 @@
-//! Breakpoints stop where a scan of the recorded days says they should, and every write of a figure is accounted for.
+//! Breakpoints stop on the days that a scan of the recorded days finds, and the writes of a figure explain all its changes.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -47,7 +47,7 @@ fn condition(text: &str) -> Condition {
     text.parse().unwrap_or_else(|problem| panic!("{text}: {problem:?}"))
 }
 
-/// What is recorded of a day, straight from the state and the facts.
+/// Recorded values of a day, read directly from state and facts.
 #[derive(Clone, Copy, Default)]
 struct Seen {
     cash: f64,
@@ -62,7 +62,7 @@ struct Seen {
     reputation: ByGroup<f64>,
 }
 
-/// Simulates days without breakpoints; day 1 first.
+/// Simulates days without breakpoints, from day 1.
 fn recorded(session: &mut Session) -> Vec<Seen> {
     let mut all = Vec::new();
     while session.day() < DAYS {
@@ -99,7 +99,7 @@ fn recorded(session: &mut Session) -> Vec<Seen> {
     all
 }
 
-/// What decides of each condition, written once more: whether it holds on a day, from 1, of what was recorded.
+/// An independent implementation of each condition: whether it is true on a day, from 1, of the recorded values.
 type Holds = fn(&[Seen], usize) -> bool;
 
 fn churn_7(days: &[Seen], day: usize) -> Option<f64> {
@@ -140,7 +140,7 @@ const CONDITIONS: [(&str, Holds); 12] = [
     }),
 ];
 
-/// Every day on which each condition becomes true, by a loop over what was recorded.
+/// Returns every day on which each condition becomes true, with a loop over the recorded values.
 fn scanned(days: &[Seen]) -> Vec<(u32, String)> {
     let mut found = Vec::new();
     for day in 1..=days.len() {
@@ -191,14 +191,14 @@ fn breakpoints_equal_a_scan() {
     assert_eq!(stops, expected);
     let kinds: std::collections::BTreeSet<&str> = stops.iter().map(|(_, text)| text.as_str()).collect();
     assert!(kinds.len() >= 9 && stops.len() > 30, "{kinds:?} {}", stops.len());
-    // The hash of the facts goes by lines, and a stop ends one.
+    // The hash of the facts restarts with each line, and a stop ends a line.
     let parts = |session: &Session| {
         let (_, mut parts) = session.state_hash();
         parts.remove("facts").expect("a part");
         parts
     };
     assert_eq!(parts(&stopping), parts(&alone), "stopping changes nothing");
-    // What was found looking forward is found looking back, in the run that had no breakpoints and is over.
+    // Searching the finished run without breakpoints finds the same days.
     for (text, holds) in CONDITIONS {
         let own = condition(text);
         let found: Vec<u32> =
@@ -223,7 +223,7 @@ fn a_stop_in_the_middle_of_a_week_is_a_step_line_and_the_run_verifies() {
     week(&mut other);
     other.step(7, &mut |_| {}).expect("days");
     other.step(3, &mut |_| {}).expect("days");
-    // Days that nobody watched are simulated again first.
+    // Days without breakpoints are simulated again first.
     session.inspect().set_breakpoint(condition("subscribers(S1) < 0")).expect("a breakpoint");
     let run = session.inspect().run_until_breakpoint(10, &mut |_| {}).expect("days");
     assert_eq!((run.from, session.day(), run.hits.len()), (7, 17, 0));
@@ -279,13 +279,13 @@ fn churn_over_thirty_days_is_the_share_of_those_of_thirty_days_ago_who_have_left
     assert!(churn > 0.0 && (churn - of_the_tables).abs() < 1e-12, "{churn} {of_the_tables}");
 }
 
-/// What a reputation would be after changes, by the rule of the world: each is clamped to 0..=1 and floored.
+/// Returns a reputation after changes, by the rule of the simulator: each is clamped to 0..=1 and floored.
 fn moved(from: f64, changes: &[f64], floor: f64) -> f64 {
     changes.iter().fold(from, |value, change| (value + change).clamp(0.0, 1.0).max(floor))
 }
 
-/// How often each mechanism wrote figures on days, where every write begins with what the one before it left and adds
-/// what it says, bit for bit, from what was recorded of the day before to what was recorded of the day.
+/// Counts the writes of each mechanism. Checks that the writes of a day form a chain, bit for bit, from the recorded value of the
+/// previous day to that of the day.
 fn accounted(
     session: &mut Session,
     targets: &[WriteTarget],
@@ -370,7 +370,7 @@ fn who_adds_up_to_the_change_bit_for_bit() {
 fn who_accounts_for_companies_that_sign_and_that_are_lost() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = courted(folder.path(), 6);
-    // From here on nobody answers them.
+    // From here on, the player does not reply.
     weeks(&mut session, 6);
     let sql = |what: &str| {
         format!(
@@ -469,8 +469,8 @@ fn hidden_figures_of_runs_that_go_on_stop_nothing() {
                 "not_in_this_mode: the x-ray works in debug runs and in runs that are over"
             );
         }
-        assert_eq!((lines(), session.day()), (before, 7), "nothing is recorded and no day runs");
-        // Whoever gives it up may look back, and cannot go on.
+        assert_eq!((lines(), session.day()), (before, 7), "no line is recorded and no day is simulated");
+        // After abandoning the run, the user can search it, but not continue it.
         session.end().expect("it ends");
         let number = session.inspect().set_breakpoint(own).expect("a breakpoint").number;
         assert_eq!(session.inspect().look_back_from(Some(number)).expect("a look").len(), 1);
@@ -575,20 +575,20 @@ fn a_breakpoint_that_was_true_all_along_is_told_from_one_that_never_was() {
     assert_eq!(session.company().observe().cash_change_days, 5);
 }
 
-/// The first subscribers come in the third week: 30 days later churn has its first value, that of the first day's alone.
+/// The first subscribers sign up in the third week: 30 days later churn has its first value, for those of the first day only.
 #[test]
 fn a_figure_over_days_is_watched_from_its_second_value_on() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, 70);
     session.inspect().set_breakpoint(condition("churn(S1) >= 0")).expect("it is set");
     let run = session.inspect().run_until_breakpoint(69, &mut |_| {}).expect("days");
-    assert_eq!(run.hits, [], "it begins true, which is no change");
+    assert_eq!(run.hits, [], "it is true from the start, which is not a change");
     let told: Vec<_> = run.true_before.iter().map(|own| own.began).collect();
-    let began = told[0].expect("it began on one of the days");
+    let began = told[0].expect("it became true on one of the days");
     assert!(began > 30, "{began}");
     let found = session.inspect().find_days(condition("churn(S1) >= 0")).expect("days");
     let told: Vec<_> = found.iter().map(|own| (own.day, own.begins, own.becomes_true())).collect();
-    assert_eq!(told, [(began, true, false)], "where it began so is told as such");
-    // What is read on a day is watched from its first day on.
+    assert_eq!(told, [(began, true, false)], "a condition that is true from the start is reported as such");
+    // Conditions on values of a day are checked from the first day on.
     assert_eq!(session.inspect().find_days(condition("subscribers(S1) >= 0")).expect("days").len(), 1);
 }

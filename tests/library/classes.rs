@@ -1,4 +1,4 @@
-//! A class of thirty: handed out, played on thirty machines, collected and shown.
+//! A class of thirty students: created, played on thirty machines, collected and shown.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -20,7 +20,6 @@ use tempfile::TempDir;
 
 use crate::support::forging::forge;
 
-/// A class in a folder, and its machines.
 struct School {
     place: TempDir,
     class: Class,
@@ -45,14 +44,14 @@ impl School {
         self.place.path().join("machines").join(name)
     }
 
-    /// Opens a hand-out on a machine of its own; tells the folder of its run.
+    /// Opens a handout on a separate machine and returns the folder of its run.
     fn begin(&self, label: &str, machine: &str) -> PathBuf {
         let runs = self.machine(machine);
         let run = Handout::read(&self.handout(label)).expect("a hand-out").place(&runs).expect("a run");
         runs.join("participants").join(label).join(run)
     }
 
-    /// Plays a hand-out at a price on a machine of its own; tells the folder of its run.
+    /// Plays a handout with a price on a separate machine and returns the folder of its run.
     fn play(&self, label: &str, machine: &str, price: f64, weeks: u32) -> PathBuf {
         let folder = self.begin(label, machine);
         play_on(&folder, price, weeks);
@@ -88,7 +87,7 @@ fn lesson() -> ToHandOut {
     ToHandOut::Lesson(Arc::new(Lesson::of_file(&path).expect("a lesson")))
 }
 
-/// Forges lines, and removes what remembers the true ones.
+/// Forges lines, and removes database and snapshot, which store the true position.
 fn forge_all(folder: &Path, change: impl Fn(usize, &mut serde_json::Value)) {
     forge(folder, change);
     let kept = ["run.toml", "trajectory.jsonl", "lesson.toml", "lesson.md"];
@@ -99,7 +98,7 @@ fn forge_all(folder: &Path, change: impl Fn(usize, &mut serde_json::Value)) {
     }
 }
 
-/// Hands a run over as an archive beside its machine, and removes the run.
+/// Exports a run as an archive next to its machine, and removes the run.
 fn as_archive(folder: &Path, archive: &Path) {
     let beside = archive.parent().expect("a folder");
     fs::create_dir_all(beside).expect("a folder");
@@ -133,13 +132,13 @@ fn a_class_of_thirty_is_collected_and_shown_as_it_was_played() {
             _ => {
                 let folder = school.play(label, &machine, price, 3);
                 match label {
-                    // A figure is another; the sum of its line is not.
+                    // Changes a figure without updating the sum of its line.
                     "S05" => replace_in(
                         &folder.join("trajectory.jsonl"),
                         "\"event\":\"goal\"",
                         "\"event\":\"hint\"",
                     ),
-                    // A better goal, with sums and chain computed anew.
+                    // Improves a goal, with recomputed sums and hash chain.
                     "S06" => forge_all(&folder, |_, line| {
                         if line["event"] == "goal" {
                             line["value"] = json!(99_999.0);
@@ -155,10 +154,10 @@ fn a_class_of_thirty_is_collected_and_shown_as_it_was_played() {
             }
         }
     }
-    // The same run once more is no other run.
+    // A duplicate of a run is not counted as another run.
     let again = school.machine("archives").join("copy-of-S01.tar.gz");
     fs::copy(school.machine("archives").join("S01.tar.gz"), &again).expect("copied");
-    // A run of something else lies on a machine, as everywhere.
+    // A machine can have unrelated runs.
     let other = Storage::Runs(school.machine("machine-S02"));
     drop(Session::create(
         NewRun { storage: other, days: Some(28), ..NewRun::default() },
@@ -218,7 +217,7 @@ fn check_tables(school: &School, collection: &ClassCollection) {
     assert_eq!(
         first[column("of_good")],
         "1",
-        "S01 plays as the good play does: {first:?} {:?}",
+        "S01 plays like the reference play: {first:?} {:?}",
         collection.references
     );
     assert_eq!(
@@ -230,7 +229,7 @@ fn check_tables(school: &School, collection: &ClassCollection) {
     assert_eq!((last[column("goals_reached")].as_str(), last[column("pitfalls")].as_str()), ("0", "dear"));
     let explained: Vec<String> =
         columns_table(&plain).into_iter().skip(1).map(|row| row[0].clone()).collect();
-    assert_eq!(explained, table[0], "every column is explained");
+    assert_eq!(explained, table[0], "every column has a description");
 
     let text = shown_in_words(&plain);
     let ranking: Vec<&str> = text.lines().filter(|line| line.contains('%') && line.contains("/1")).collect();
@@ -285,21 +284,21 @@ fn a_hand_out_goes_on_with_its_run_and_another_try_keeps_its_stamp() {
     let manifest = manifest_of(&folder).expect("a manifest");
     assert_eq!(manifest.participant.as_deref(), Some("S02"));
     play_on(&folder, 40.0, 3);
-    assert_eq!(school.begin("S02", "one"), folder, "the run that is over is shown");
+    assert_eq!(school.begin("S02", "one"), folder, "the finished run is shown");
     let first = Session::open(&folder, Access::Write, true).expect("it opens");
     let again = try_step_again(&first, 0).expect("a try");
     drop(first);
     let id = again.manifest().id.clone();
     drop(again);
     let own = school.begin("S02", "one");
-    assert_eq!(own, folder.with_file_name(&id), "the open try is gone on with");
+    assert_eq!(own, folder.with_file_name(&id), "the open attempt continues");
     play_on(&own, 8.0, 3);
     let collection = school.collect(&[school.machine("one")]);
     assert_eq!(collection.runs.iter().filter(|run| run.verdict == RunVerdict::Finished).count(), 2);
     assert_eq!(collection.runs.iter().map(|run| run.evidence.tries).max(), Some(2));
     assert_eq!(collection.findings, [ClassFinding::Missing { label: "S01".to_owned() }]);
 
-    // A lesson that was made easier, in a hand-out that was sealed anew: what comes of it names another digest.
+    // An easier lesson in a handout with a new seal: its runs have another digest.
     let easier = Session::open(&own, Access::Read, false).expect("it opens").manifest().id.clone();
     forge_all(&own, |at, line| {
         if at == 0 {
@@ -318,7 +317,7 @@ fn a_hand_out_goes_on_with_its_run_and_another_try_keeps_its_stamp() {
     let other = school.collect(std::slice::from_ref(&own)).findings;
     assert!(matches!(&other[..], [ClassFinding::Missing { .. }, ClassFinding::Altered { .. }]), "{other:?}");
 
-    // Somebody else's hand-out, with the own label in the first line.
+    // A handout of another student, with the own label in the first line.
     forge_all(&folder, |at, line| {
         if at == 0 {
             line["participant"] = json!("S01");
@@ -355,7 +354,7 @@ fn a_run_is_handed_out_under_labels_and_names_of_their_own() {
     assert_eq!(
         ClassCollection::read(&school.folder()).expect("kept"),
         collection,
-        "quotas without limits are no numbers"
+        "quotas without limits are not numbers"
     );
     let verdicts: Vec<RunVerdict> = collection.runs.iter().map(|run| run.verdict).collect();
     assert_eq!(verdicts, [RunVerdict::NotFinished, RunVerdict::NotFinished]);

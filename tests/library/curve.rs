@@ -1,4 +1,4 @@
-//! The curve explorer line by line: who is told what, and what a look leaves behind.
+//! The curve explorer: who may see which values, and which lines an inspection records.
 
 use novamind::insight::{CurveExplorer, CurveLook};
 use novamind::record::mode::Mode;
@@ -28,7 +28,7 @@ fn unfinished_runs_are_told_of_studies_and_runs_that_are_over_of_the_truth() {
             "group_not_discovered (group): group D_S05 is not known yet; the known groups are S1, S2, S3, E1, E2, E3"
         );
         assert_eq!(CurveLook::begin(&mut session, s1, 7).expect_err("hidden").code, "not_in_this_mode");
-        assert_eq!(read().lines.len(), before, "nothing hidden was shown, so nothing is recorded");
+        assert_eq!(read().lines.len(), before, "no hidden value was shown, so no line is recorded");
         session.end().expect("it ends");
         assert!(CurveExplorer::of(&mut session, s1).expect("the truth").is_truth());
         assert!(CurveExplorer::of(&mut session, unknown).expect("the truth").is_truth());

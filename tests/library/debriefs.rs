@@ -1,5 +1,5 @@
-//! The debrief of a lesson: the own curve is the record's, the reference plays are those of the check, and the decision
-//! that parted them is worth what a play with it comes to.
+//! The debrief of a lesson: the student's curve is that of the record, the reference plays are those of the check, and the first
+//! different decision has the value of a re-simulation with it.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -22,7 +22,6 @@ fn lesson() -> Arc<Lesson> {
     Arc::new(Lesson::of_file(&path).expect("a lesson"))
 }
 
-/// The same lesson, judged by recurring revenue.
 fn judged_by_revenue(folder: &Path) -> Arc<Lesson> {
     let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/lessons");
     let plan = std::fs::read_to_string(from.join("two-weeks.toml")).expect("a plan");
@@ -33,7 +32,7 @@ fn judged_by_revenue(folder: &Path) -> Arc<Lesson> {
     Arc::new(Lesson::of_file(&folder.join("two-weeks.toml")).expect("a lesson"))
 }
 
-/// A student at the beginning of the lesson, at another seed than its own.
+/// Starts the lesson of a student, with a seed that differs from that of the lesson.
 fn student(folder: &Path) -> Session {
     student_of(lesson(), folder)
 }
@@ -45,7 +44,7 @@ fn student_of(lesson: Arc<Lesson>, folder: &Path) -> Session {
     Session::create(new, &Configuration::shipped()).expect("the lesson begins")
 }
 
-/// Plays the lesson to its end, with a price from some week on.
+/// Plays the lesson to its end, with a price from a certain week on.
 fn played(folder: &Path, price: u32, from: u32) -> Session {
     finished(student(folder), price, from)
 }
@@ -91,7 +90,7 @@ fn curves_are_the_record_and_the_plays_of_the_check() {
     assert_eq!(found.bad.as_ref().expect("a bad play").cash_by_day, reference(&plan.bad));
     assert_eq!(found.steps.len(), 2);
     assert_eq!(found.pitfalls, [(7, "Somebody bought.".to_owned())]);
-    // From the disk it is the same.
+    // The result from the disk is equal.
     let run = session.folder().expect("a folder").to_owned();
     drop(session);
     assert_eq!(debrief(&Session::open(&run, Access::Read, true).expect("it opens")), found);
@@ -103,12 +102,12 @@ fn the_first_other_decision_is_worth_what_a_play_with_it_comes_to() {
     let found = debrief(&played(folder.path(), 30, 0));
     let DecisionComparison::Parted(parting) = &found.comparison else { panic!("{:?}", found.comparison) };
     assert_eq!((parting.week, parting.day, parting.decisions.len()), (1, 0, 1));
-    // The one decision makes the good play of it.
+    // This single decision turns the run into the reference play.
     let effect = parting.effect.simulated().expect("an effect");
     let good = found.good.as_ref().expect("a good play").cash_by_day.clone();
     assert_eq!(Some(&effect.with), good.last());
     assert_eq!(Some(&effect.own), found.own.last());
-    // A dearer second week is left as it was: the good play of the first week is not the whole good play.
+    // The higher price of the second week stays: the decision of the first week is not the complete reference play.
     let later = debrief(&played(folder.path(), 40, 1));
     let DecisionComparison::Parted(parting) = &later.comparison else { panic!("{:?}", later.comparison) };
     assert_eq!(parting.week, 1);
@@ -174,7 +173,7 @@ fn nothing_is_told_of_the_good_play_before_the_part_is_over() {
     let mut session = student(folder.path());
     guess_in_lesson(&mut session, 0.5).expect("a guess");
     week(&mut session);
-    assert_eq!(PlayedPart::of(&session).expect_err("it goes on").code, "lesson_not_over");
+    assert_eq!(PlayedPart::of(&session).expect_err("it continues").code, "lesson_not_over");
     let other = Session::create(NewRun::default(), &Configuration::shipped()).expect("a run");
     assert_eq!(PlayedPart::of(&other).expect_err("no lesson").code, "not_in_a_lesson");
 }

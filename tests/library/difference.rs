@@ -1,4 +1,4 @@
-//! Two days of a run, and two runs on a day: what differs is what was changed, and looking is recorded.
+//! Comparison of two days of a run and of two runs on a day: exactly the changed values differ, and inspections are recorded.
 
 use std::path::Path;
 
@@ -138,7 +138,8 @@ fn nobody_looks_into_an_unfinished_run_and_once_it_is_over_the_look_is_recorded(
         assert!(refused.contains("debug runs and in runs that are over"), "{refused}");
         let lines = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines;
         assert!(lines.iter().all(|line| line.record.kind() != "xray"));
-        let mut session = Session::open(&place, novamind::session::Access::Write, false).expect("it goes on");
+        let mut session =
+            Session::open(&place, novamind::session::Access::Write, false).expect("it continues");
         session.end().expect("it ends");
         drop(session);
         let mut session = open_to_look_inside(&place, Default::default()).expect("it is over");
@@ -165,7 +166,7 @@ fn a_parameter_that_differs_leads() {
     };
     assert_eq!(parameters(&mut session, 14, 16), []);
     assert_eq!(parameters(&mut session, 16, 17), [(key.to_owned(), old, json!(0.5))]);
-    // Leads of a day are those of individuals and those of companies.
+    // Leads of a day include individuals and enterprises.
     let found = session.inspect().difference_of_days(3, 20).expect("a look");
     let sum: f64 =
         found.figures.iter().filter(|(name, ..)| name.ends_with("leads of the day")).map(|own| own.2).sum();

@@ -1,4 +1,4 @@
-//! Stories of negotiations: a company that courts companies, week by week, with its records.
+//! Negotiations: a company that negotiates with enterprises for several weeks, with its records.
 
 use std::path::Path;
 
@@ -34,7 +34,7 @@ fn create(storage: Storage) -> Session {
     session
 }
 
-/// Answers some threads, ends some, leaves some alone, and asks a subscriber for another price.
+/// Replies in some threads, ends some, ignores some, and offers a subscriber another price.
 fn answer(session: &mut Session) {
     let seen = session.company().observe();
     let mine = |thread: &&WaitingThread, rest: u32| {
@@ -61,7 +61,7 @@ fn answer(session: &mut Session) {
                    WHERE status = 'subscribed' AND customer_type = 'large' ORDER BY 1";
         for customer in column(session, sql).into_iter().step_by(9) {
             let deal = json!({"deals": [[customer, [["B", 30]]]]});
-            // In an open thread the company may just have been answered; that is a turn more.
+            // In an open thread the player may just have replied, which adds a turn.
             session.call("send_enterprise_deal", &deal, Via::Script).expect("a subscriber can be written to");
         }
     }
@@ -111,7 +111,7 @@ fn a_run_with_deals_is_left_continued_and_played_again() {
     a_changed_price_is_found(&place);
 }
 
-/// A trajectory in which an offer was changed does not verify: the chain of its lines breaks.
+/// A trajectory with a changed offer does not verify, because the hash chain is broken.
 fn a_changed_price_is_found(place: &Path) {
     let path = place.join("trajectory.jsonl");
     let text = std::fs::read_to_string(&path).expect("a trajectory");
@@ -125,7 +125,6 @@ fn a_changed_price_is_found(place: &Path) {
     assert!(verify(place).is_err());
 }
 
-/// What a row shows, and what it does not.
 #[test]
 fn turns_are_recorded_as_a_manager_sees_them() {
     let mut session = create(Storage::Memory);
@@ -135,7 +134,7 @@ fn turns_are_recorded_as_a_manager_sees_them() {
         let sql = format!("SELECT count(*) FROM enterprise_turns WHERE thread_type = '{kind}'");
         assert!(number(run, &sql) > 0.0, "{kind}");
     }
-    // Turns are numbered without gaps; only what is sent twice in one call could share a number.
+    // Turns are numbered without gaps; only two offers of one call could share a number.
     assert_none(
         run,
         "SELECT thread_id, count(*) AS n, max(turn_number) AS m FROM enterprise_turns GROUP BY 1 HAVING m <> n - 1",
@@ -144,7 +143,7 @@ fn turns_are_recorded_as_a_manager_sees_them() {
         run,
         "SELECT * FROM enterprise_turns WHERE message_id > (SELECT count(*) FROM enterprise_turns)",
     );
-    // Only companies have words and addresses, and the market at the end of a deal.
+    // Only enterprises have texts and addresses, and the market at the end of a deal.
     assert_none(run, "SELECT * FROM enterprise_turns WHERE (sender = 'customer') <> (email LIKE '%@%.%')");
     assert_none(
         run,
@@ -168,7 +167,7 @@ fn turns_are_recorded_as_a_manager_sees_them() {
         run,
         "SELECT * FROM enterprise_turns WHERE sender = 'agent' AND turn_number = 0 AND (seat_count < 30 OR thread_type <> 'renegotiation')",
     );
-    // A thread closes with the company's yes and the market's record, or with a rejection; death does not show.
+    // A thread closes with the acceptance and the market's record, or with a rejection; unanswered threads have no closing row.
     assert_none(
         run,
         "SELECT * FROM enterprise_turns WHERE closed <> (close_reason IN ('accepted', 'agent_rejected'))",
@@ -187,7 +186,7 @@ fn turns_are_recorded_as_a_manager_sees_them() {
                   (SELECT thread_id FROM enterprise_turns WHERE closed) AND customer_id IN \
                   (SELECT customer_id FROM subscriptions WHERE status IN ('lost', 'cancelled'))";
     assert!(number(run, silent) > 5.0);
-    // Nothing hidden has a column.
+    // No column has hidden values.
     let columns = run.query("SELECT * FROM enterprise_turns LIMIT 1").expect("a row").columns;
     let visible = [
         "message_id",
@@ -207,7 +206,6 @@ fn turns_are_recorded_as_a_manager_sees_them() {
     assert_eq!(columns, visible);
 }
 
-/// Subscriptions, bills and customers after deals.
 #[test]
 fn deals_show_in_subscriptions_and_bills() {
     let mut session = create(Storage::Memory);
@@ -220,7 +218,7 @@ fn deals_show_in_subscriptions_and_bills() {
         f64::from(seen.companies)
     );
     assert!(seen.companies > 10 && seen.seats > 1000, "{} {}", seen.companies, seen.seats);
-    // A lead's record: its day of billing stays, everything else follows the deal.
+    // The row of a lead keeps its billing day; everything else follows the deal.
     assert_none(run, &format!("SELECT * {companies} AND billing_day_mod30 <> created_day % 30"));
     assert_none(
         run,
@@ -251,7 +249,7 @@ fn deals_show_in_subscriptions_and_bills() {
             "SELECT * {companies} AND status IN ('subscribed', 'cancelled') AND c.contract_start_day IS NULL"
         ),
     );
-    // Who was cancelled because nobody answered ends at the end of the month that was agreed on.
+    // Subscriptions that were cancelled without a reply end at the end of the agreed month.
     assert!(number(run, &format!("SELECT count(*) {companies} AND status = 'cancelled'")) > 0.0);
     assert_none(
         run,
@@ -271,7 +269,7 @@ fn deals_show_in_subscriptions_and_bills() {
                   AND abs(l.amount - s.effective_price * s.seat_count) > 0.5"
         ),
     );
-    // The inbox names customers where it may.
+    // The inbox names customers.
     assert_none(
         run,
         "SELECT day, count(*) AS n FROM notifications WHERE type = 'deal_won' GROUP BY 1 \
@@ -305,7 +303,7 @@ fn the_week_counts_threads_replies_and_what_waits() {
         assert_eq!(number(run, &sql), f64::from(thread.offers_so_far));
     }
     rules_see_what_the_tables_say(run);
-    // What was written since the week is told, and cannot be taken back: equal offers of a call as one sentence.
+    // The change review lists the offers since the week, with equal offers of a call in one sentence; they cannot be undone.
     answer(run);
     let done = run.company().observe().purchases;
     let offers = done.iter().filter(|line| line.starts_with("offered C at $"));
@@ -318,7 +316,7 @@ fn the_week_counts_threads_replies_and_what_waits() {
     assert_eq!(run.undo(Via::Script).expect_err("nothing was set").code, "nothing_to_undo");
 }
 
-/// A company that asks for the price of another plan names it in its letter.
+/// An enterprise that asks for the price of another plan names the plan in its message.
 fn wishes_name_another_plan(run: &mut Session, thread: &AskingThread) {
     let sql = format!(
         "SELECT t.message_text, s.plan FROM enterprise_turns t JOIN subscriptions s USING (customer_id)
@@ -331,7 +329,7 @@ fn wishes_name_another_plan(run: &mut Session, thread: &AskingThread) {
     assert!(text_at(&rows[0], 0).to_lowercase().contains(&format!("plan {}", plan.to_lowercase())));
 }
 
-/// Subscribers that ask for another plan: their rows hold it before any price is named.
+/// The rows of subscribers that ask for another plan have the plan before any price is named.
 #[test]
 fn wishes_for_another_plan_are_in_the_rows() {
     let mut session = create(Storage::Memory);
@@ -345,10 +343,10 @@ fn wishes_for_another_plan_are_in_the_rows() {
             wishes += 1;
         }
     }
-    assert!(wishes > 0, "nobody asked for another plan");
+    assert!(wishes > 0, "no subscriber asked for another plan");
 }
 
-/// What rules ask of a thread stands in the tables: price and plan that a company named, and the last offer.
+/// The tables have the fields of rules: price and plan that an enterprise named, and the last offer.
 fn rules_see_what_the_tables_say(run: &mut Session) {
     let (threads, _) = AskingThread::all(run).expect("threads");
     let mut asked = 0;

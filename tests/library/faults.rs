@@ -1,4 +1,4 @@
-//! Faults: each changes the world, shows in the view of the x-ray that is named for it, and goes where its run goes.
+//! Seeded faults: each changes the simulation, is visible in its view of the x-ray, and stays with its run.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -33,7 +33,7 @@ fn run(session: &mut Session, days: u32) {
     }
 }
 
-/// A company with subscribers of several groups and plans, after so many days.
+/// Returns a company with subscribers of several groups and plans after a number of days.
 fn company(folder: &Path, fault: Option<Fault>, days: u32) -> Session {
     let mut session = Session::create(new_run(folder, fault), &Configuration::shipped()).expect("it begins");
     open_shop(&mut session);
@@ -50,7 +50,7 @@ fn company(folder: &Path, fault: Option<Fault>, days: u32) -> Session {
     session
 }
 
-/// Days of a run in which departures hurt so much that reputation meets its floor.
+/// Returns days of a run in which cancellations reduce reputation to its minimum.
 const STRESSED: u32 = 50;
 
 fn group(id: &str) -> Group {
@@ -67,7 +67,7 @@ fn parameter(session: &Session, key: &str) -> f64 {
         .expect("a number")
 }
 
-/// What tells a fault: the days it takes to show, and whether a view says something that the mechanism does not.
+/// Evidence of a fault: the days until it shows, and whether a view differs from the mechanism.
 struct Symptom {
     days: u32,
     shows: fn(&mut Session) -> bool,
@@ -90,7 +90,7 @@ fn symptom(fault: Fault) -> Symptom {
         }),
         Fault::QuotaInverted => at(12, |session| {
             let mood = session.inspect().satisfaction_equation(group("S1"), Some(12)).expect("a look");
-            // Nobody's demand is near the quota.
+            // No demand is close to the quota.
             mood.term(MoodTerm::Quota).expect("subscribers") != 0.0
         }),
         Fault::SmallerRivalMove => at(75, |session| {
@@ -145,7 +145,7 @@ fn symptom(fault: Fault) -> Symptom {
             let paid = -compute.expect("compute is booked").asked();
             let used = number(session, "SELECT sum(usage_units) FROM daily_usage WHERE day = 28");
             let unit = |tier: u32| parameter(session, &format!("model_tier.{tier}.unit_cost"));
-            // Somebody is on plan B or C, whose models are dearer.
+            // Some subscribers use plan B or C, whose models are more expensive.
             paid <= used * unit(1) * (1.0 + 1e-9)
         }),
         Fault::ReputationWithoutFloor => at(STRESSED, |session| {
@@ -180,7 +180,7 @@ fn each_fault_changes_the_world_and_shows_in_its_view() {
         let sound = sound_companies.entry(days).or_insert_with(|| company(folder.path(), None, days));
         let mut faulty = company(folder.path(), Some(fault), days);
         assert_ne!(sound.state_hash(), faulty.state_hash(), "{fault:?} changes nothing");
-        assert!(!shows(sound), "{fault:?} shows where it is not");
+        assert!(!shows(sound), "{fault:?} shows in a run without it");
         assert!(shows(&mut faulty), "{fault:?} does not show");
         let first = sound.inspect().difference_to(&mut faulty, None).expect("a look").first_day;
         assert!(first.is_some_and(|day| day <= days), "{fault:?}");
@@ -197,7 +197,7 @@ fn a_fault_stays_with_its_run_and_no_word_names_it() {
         assert_eq!(
             session.company().debug_parameters().and_then(|own| own.changed()).expect("a debug run").in_force,
             [],
-            "it is no parameter"
+            "it is not a parameter"
         );
         let own = place(&session);
         let branch = session.branch(3, Mode::Debug).expect("a branch");
@@ -209,7 +209,7 @@ fn a_fault_stays_with_its_run_and_no_word_names_it() {
         for place in [&own, &branch_place] {
             verify(place).expect("it verifies");
         }
-        // The manifest can be lost: the first line holds the number, and nothing else of it.
+        // The manifest can be lost: the first line has the number of the fault, and nothing else about it.
         let text = std::fs::read_to_string(own.join("run.toml")).expect("a manifest");
         assert!(text.contains(&format!("\nfault = {}\n", fault.number())), "{text}");
         std::fs::remove_file(own.join("run.toml")).expect("it goes");
@@ -218,11 +218,11 @@ fn a_fault_stays_with_its_run_and_no_word_names_it() {
         assert!(matches!(&lines[0].record, Record::Start(start) if start.fault == Some(fault)));
         let told = std::fs::read_to_string(own.join("trajectory.jsonl")).expect("lines");
         assert!(!told.contains(&format!("{fault:?}")));
-        // With another number it is another run.
+        // Another number is another run.
         let other = Fault::ALL.into_iter().find(|other| *other != fault).expect("another");
         let mut forged = manifest_of(&own).expect("of the line");
         forged.fault = Some(other);
-        assert!(forged.params().is_err(), "the digest tells them apart");
+        assert!(forged.params().is_err(), "the digests differ");
         forged.fault = None;
         assert!(forged.params().is_err());
     }
@@ -250,7 +250,7 @@ fn only_a_debug_run_has_a_fault() {
     for key in ["fault", "run.fault", "fidelity.fault"] {
         assert!(Session::create(new(key), &Configuration::shipped()).is_err(), "{key}");
     }
-    // A manifest that says so of another mode is refused.
+    // A manifest with a fault in another mode is rejected.
     let session = company(folder.path(), Some(Fault::DriftTwice), 7);
     let own = place(&session);
     drop(session);

@@ -1,5 +1,5 @@
-//! What a lesson lets pass and when: goals relative to a good play with rules, hidden state of a part while another is to
-//! come, beginnings that a kill has cut, and figures that are measured in another world.
+//! Conditions of lessons: goals relative to a reference play with rules, hidden state of a part before the next one, starts that
+//! were interrupted by a kill, and figures that are measured in another world.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,7 +16,7 @@ fn folder_of(session: &Session) -> PathBuf {
     session.folder().expect("a folder").to_owned()
 }
 
-/// Two parts on one seed, each of two weeks after one that is played already.
+/// Two parts with one seed, each of two weeks after an initial week.
 const PARTS: &str = r#"
 title = "Two parts"
 minutes = 5
@@ -81,7 +81,7 @@ fn hidden_state_of_a_part_is_shown_once_the_last_part_is_over() {
         assert!(!session.may_look_inside());
         let refused = session.refuse_to_look_inside().expect_err("it is refused");
         assert!(refused.message.contains("after its last part"), "{refused}");
-        // The causes are those that a player of an unfinished run sees: no hidden figure, no look.
+        // The causes are those of an unfinished run: without hidden figures and inspections.
         let asked: WeekQuestion = "satisfaction 3".parse().expect("a question");
         assert_eq!(code(look_at_figure(session, &asked)), "not_in_this_mode");
         assert!(!may_look_inside(session.manifest(), session.ended(), session.folder()));
@@ -144,7 +144,7 @@ fn a_try_that_was_cut_before_its_step_began_is_counted_when_it_is_opened() {
     }
 }
 
-/// Leaves some lines of a run, as a kill does; what had heard of later ones is gone with them.
+/// Truncates a run to a number of lines, as a kill does, and removes the files that store later positions.
 fn cut(folder: &Path, lines: &[&str]) {
     std::fs::write(folder.join("trajectory.jsonl"), lines.join("\n") + "\n").expect("written");
     for entry in std::fs::read_dir(folder).expect("a folder").flatten() {
@@ -155,7 +155,7 @@ fn cut(folder: &Path, lines: &[&str]) {
     }
 }
 
-/// Companies are waiting after some weeks; the good play answers them by rules.
+/// A lesson with waiting enterprises, whose reference play replies by rules.
 const RULED: &str = include_str!("../data/lessons/answers-by-rules.toml");
 
 #[test]
@@ -166,7 +166,7 @@ fn a_goal_is_held_against_a_good_play_that_answers_by_rules() {
     for _ in 0..3 {
         week(&mut session).expect("a week");
     }
-    // Nobody has said how rules answer: the step waits for its judge instead of being judged wrongly.
+    // Without an implementation of the rules, the step stays unjudged instead of being judged wrongly.
     week(&mut session).expect("a week");
     assert!(session.lesson().expect("a lesson").goals(0).is_empty());
     assert_eq!(code(week(&mut session)), "step_not_begun");
@@ -180,7 +180,7 @@ fn a_goal_is_held_against_a_good_play_that_answers_by_rules() {
     assert_eq!(goal.met, Some(false));
     assert!(standing.has_begun(1));
     week(&mut session).expect("a week");
-    // Played as the good play does, it is reached.
+    // With the decisions of the reference play, the goal is reached.
     let lesson = Arc::new(lesson_of(folder.path(), "gates", RULED).expect("a lesson"));
     let plays = lesson.plan.good.plays.clone();
     let play = PartPlay {

@@ -1,4 +1,4 @@
-//! Lessons: what their files may say, how one goes, what its record holds, and that the shipped ones keep their promises.
+//! Lessons: validation of their files, the course of a lesson, its record, and the checks of the bundled lessons.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use serde_json::json;
 
 use crate::support::lessons::{self, code, lesson_of, week};
 
-/// Two steps of two weeks, with a number to guess and a choice.
+/// Two steps of two weeks, with a numeric guess and a choice.
 const PLAN: &str = r#"
 title = "Two steps"
 minutes = 5
@@ -106,7 +106,7 @@ fn wrong_files_name_line_and_key() {
         ("pitfall = \"costly\"", "pitfall = \"cheap\"", "bad.pitfall"),
         ("{after}", "{before}", "line 38, measured"),
         ("hints = [\"Wait.\"]", "hints = []", "one to three hints"),
-        ("weeks = 2\nhints = [\"Wait", "weeks = 0\nhints = [\"Wait", "a week at least"),
+        ("weeks = 2\nhints = [\"Wait", "weeks = 0\nhints = [\"Wait", "at least one week"),
         ("[[bad.play]]\nweek = 1", "[[bad.play]]\nweek = 0", "no week 0 in which a student decides"),
         ("answer = 2", "answer = 3", "the number of one of them"),
         ("at_least = 1\n", "at_least = 1\nat_most = 2\n", "one of at_least, at_most and relative"),
@@ -257,7 +257,7 @@ fn a_week_whose_judgement_did_not_reach_the_disk_is_judged_when_the_run_is_opene
     assert!(lines.len() - last_week > 3, "outcome, goal, a parameter and the next step follow");
     for kept in last_week + 1..lines.len() {
         std::fs::write(&path, lines[..kept].join("\n") + "\n").expect("written");
-        // The database had heard of the later lines only once they were there.
+        // The database would store the position of the removed lines.
         for entry in std::fs::read_dir(&own).expect("a folder").flatten() {
             if entry.file_name().to_string_lossy().starts_with("world.db") {
                 std::fs::remove_file(entry.path()).expect("removed");
@@ -313,7 +313,7 @@ fn pitfalls_are_met_once_and_reference_plays_differ() {
     assert!(check.good[0].pitfalls.is_empty());
 }
 
-/// Lessons that are played in every run of the tests: the shortest ones.
+/// The shortest lessons, which every test run plays.
 const SHORT: [&str; 4] = ["ads-in-the-product", "ladder", "list-price", "price-follows-quality"];
 
 fn keep_their_promises(names: &[&str]) {

@@ -1,4 +1,4 @@
-//! Stories through the library: runs, their records and tables, what outlives a crash, what hides from a query.
+//! Integration tests of the library: runs, records, tables, durability, and hidden state.
 
 mod battery;
 mod breakpoints;

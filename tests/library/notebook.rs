@@ -1,4 +1,4 @@
-//! Calculations and scripts of a run: kept, run, shown, replayed.
+//! Calculations and scripts of a run: storing, running, display, replay.
 
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::trajectory::record::Via;
@@ -108,7 +108,7 @@ fn what_is_kept_survives_leaving_and_is_verified() {
     call(&mut session, "run_script", json!({"name": "two"}));
     let dashboard = week(&mut session).dashboard;
     drop(session);
-    // What a script said is not asked again: chance in SQL does not damage a run.
+    // Outputs of scripts are not compared, so random functions in SQL do not damage a run.
     assert_eq!(verify(&folder).expect("it verifies").states, 1);
     let mut session = Session::open(&folder, Access::Write, true).expect("it opens");
     assert_eq!(session.company().dashboard(), dashboard);
@@ -118,7 +118,7 @@ fn what_is_kept_survives_leaving_and_is_verified() {
     let dashboard = week(&mut session).dashboard;
     assert!(dashboard.contains("money:\n  cash\n  999405.0\n"), "{dashboard}");
 
-    // Branches take along what was kept before them.
+    // Branches copy earlier calculations and scripts.
     let mut branch = session.branch(2, novamind::record::mode::Mode::Sandbox).expect("a branch");
     assert_eq!(call(&mut branch, "list_daily_calculations", json!({})), json!({"calculations": ["money"]}));
 }
@@ -177,7 +177,7 @@ fn the_dashboard_is_that_of_the_last_week_until_the_next() {
     session.save().expect("saved");
     let folder = session.folder().expect("a folder").to_owned();
     drop(session);
-    // From the snapshot, and without it.
+    // With the snapshot, and without it.
     for _ in 0..2 {
         let again = Session::open(&folder, Access::Read, true).expect("it opens");
         assert_eq!(again.company().dashboard(), told);
@@ -206,7 +206,7 @@ fn quotas_hold_for_new_calls_and_not_for_recorded_ones() {
     }
     call(&mut session, "register_script", json!({"name": "small", "code": "SELECT 1"}));
     drop(session);
-    // As a version without quotas recorded it.
+    // A record of a version without quotas.
     forge(&folder, |_, line| {
         if line["tool"] == "register_script" && line["ok"] == true {
             line["args"]["code"] = large.clone().into();

@@ -1,4 +1,4 @@
-//! Parameters that are set while a debug run goes on: the run is what its lines make of it, wherever it is opened again.
+//! Parameters that are set during a debug run: reopening it at any line leads to the same run.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ fn set(session: &mut Session, key: &str, value: Value, from: Option<u32>) {
     session.set_parameter(key, &value, from).unwrap_or_else(|refusal| panic!("{key}: {refusal}"));
 }
 
-/// A run of eight weeks in which parameters of all shapes are set: at once, in the middle of a week, and from later days on.
+/// Plays a run of eight weeks that sets parameters of all types: at once, within a week, and from later days on.
 fn changed(folder: &Path) -> Session {
     let mut session = begin_run(folder, Mode::Debug, 140);
     open_shop(&mut session);
@@ -55,7 +55,7 @@ fn states(folder: &Path) -> Vec<(u32, String)> {
     trajectory.lines.iter().filter_map(state).collect()
 }
 
-/// Everything that a database holds of money and customers.
+/// Returns all data about money and customers in a database.
 fn tables(session: &mut Session) -> Vec<Vec<novamind::database::Cell>> {
     let mut all = Vec::new();
     for sql in [
@@ -88,7 +88,7 @@ fn a_run_with_set_parameters_is_reached_again_from_everywhere() {
     let kinds = Trajectory::read(&own.join("trajectory.jsonl")).expect("lines").lines;
     assert_eq!(kinds.iter().filter(|line| line.record.kind() == "override").count(), 8);
 
-    // By replaying every line, by the snapshot, and by a part of both.
+    // By replaying every line, by the snapshot, and by a combination of both.
     assert_eq!(verify(&own).expect("it verifies").day, day);
     for gone in [&[][..], &["snapshot.bin"], &["world.db"], &["snapshot.bin", "world.db"]] {
         for name in gone {
@@ -100,7 +100,7 @@ fn a_run_with_set_parameters_is_reached_again_from_everywhere() {
         again.save().expect("saved");
     }
 
-    // Forward and back.
+    // Forward and backward.
     let mut playback = Playback::open(&own).expect("it opens");
     let on = &mut |_| ControlFlow::Continue(());
     for goal in [Goal::Last, Goal::Week(3), Goal::Week(5), Goal::First, Goal::Week(8), Goal::Last] {
@@ -125,7 +125,7 @@ fn a_run_that_was_killed_goes_on_with_what_was_set() {
     drop(whole);
     let text = std::fs::read_to_string(&path).expect("lines");
     let lines: Vec<&str> = text.split_inclusive('\n').collect();
-    // Killed after any line of a setting, after the line before a week, and in the middle of a line.
+    // A kill after each line with a setting, before a week, and within a line.
     let kind = |line: &str| {
         ["override", "advance", "week"]
             .into_iter()
@@ -140,7 +140,7 @@ fn a_run_that_was_killed_goes_on_with_what_was_set() {
         let reached = states(&place(&again));
         assert_eq!(reached, expected[..reached.len()], "cut after line {}", at + 1);
         if again.day() == 56 {
-            // Whatever waited for its day still does, also once a snapshot was made.
+            // Settings for later days stay pending, also after a snapshot.
             again.save().expect("saved");
             drop(again);
             let mut again = Session::open(&place_of(&path), Access::Write, true).expect("it opens");
@@ -326,7 +326,7 @@ fn a_line_that_sets_a_parameter_cannot_be_forged() {
         assert!(words.contains(part), "{field}: {words}");
         assert!(Session::open(&own, Access::Write, false).is_err(), "{field}");
     }
-    // A run of another mode cannot be given such a line.
+    // A run of another mode must not have such a line.
     std::fs::write(&path, &good).expect("written");
     forge(&own, |_, line| {
         if line["kind"] == "start" {
@@ -357,7 +357,7 @@ fn a_run_in_which_a_parameter_was_set_is_not_compared_with_others() {
     set(&mut session, "operations.base_outage_prob", json!(0.9), Some(100));
     assert!(session.company().observe().has_own_parameters && own(&id));
     set(&mut session, "operations.base_outage_prob", before, None);
-    assert!(session.company().observe().has_own_parameters, "what was set stays on record");
+    assert!(session.company().observe().has_own_parameters, "the settings stay in the record");
     let changed = session.company().debug_parameters().and_then(|own| own.changed()).expect("a debug run");
     assert_eq!(
         (changed.scenario.as_deref(), changed.in_force.len(), changed.waiting.len()),
@@ -369,7 +369,7 @@ fn a_run_in_which_a_parameter_was_set_is_not_compared_with_others() {
     assert!(again.company().observe().has_own_parameters);
 }
 
-/// Every kind of parameter once: `group.*.c_max_mean` and not 26 of them.
+/// Returns one parameter of each kind: `group.*.c_max_mean` once instead of 26 times.
 fn kinds(params: &Value) -> Vec<String> {
     fn walk(path: &str, value: &Value, found: &mut std::collections::BTreeMap<String, String>) {
         let below = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
@@ -452,13 +452,13 @@ fn a_day_for_whose_leads_there_is_no_room_is_refused_and_the_run_stays() {
     let refused = session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect_err("no room");
     assert_eq!((refused.code, session.day()), ("too_many_leads", today));
 
-    // From a later day on: the days before it run, in days and in weeks.
+    // From a later day on, after simulating single days and weeks.
     session.set_parameter("calendar.weekly", &usual, None).expect("as it was");
     session.set_parameter("calendar.weekly", &crowded, Some(today + 3)).expect("it waits");
     let forecasts = session.company().naive_forecasts();
     let week = session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("two days");
     assert_eq!(session.day(), today + 2);
-    assert!(week.remark.is_some_and(|text| text.contains("1,000,000 leads")), "it is told why");
+    assert!(week.remark.is_some_and(|text| text.contains("1,000,000 leads")), "the reason is reported");
     let folder = session.folder().expect("a folder").to_owned();
     drop(session);
     let mut again = Session::open(&folder, Access::Write, true).expect("it replays");

@@ -1,4 +1,4 @@
-//! Scripts in Python: what they are answered, what they may not, how they end, and that no record runs them again.
+//! Python scripts: results, restrictions, limits, and that a replay does not run them again.
 
 use std::ops::ControlFlow;
 use std::process::Command;
@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 
 use crate::support::company::{call, week};
 
-/// A run, where there is a python3 to try; elsewhere there is nothing to test.
+/// Starts a run if python3 is available. Otherwise there is nothing to test.
 fn run_with_python(storage: Storage) -> Option<Session> {
     let tried = Command::new("python3").args(["-c", ""]).output();
     if !tried.is_ok_and(|done| done.status.success()) {
@@ -74,7 +74,7 @@ fn a_script_asks_and_prints() {
     week(&mut session);
     assert_eq!(call(&mut session, "run_script", json!({ "name": "day" }))["stdout"], "{'current_day': 7}\n");
     assert_ne!(session.state_hash(), hash, "a week has passed");
-    assert_eq!(session.company().asked(), asked, "what a script asks is no history of a person");
+    assert_eq!(session.company().asked(), asked, "queries of a script are not in the query history");
 }
 
 #[test]
@@ -160,7 +160,7 @@ fn nothing_a_script_does_holds_the_run_up() {
     let said = run(&mut session, flood);
     let length = |field: &str| said[field].as_str().map_or(0, |text| text.chars().count());
     assert_eq!((length("stdout"), length("stderr")), (5000, 2000));
-    // What comes over the socket and is no request.
+    // Invalid requests on the socket.
     let noise = "import os\nfor place in range(3, 64):\n    try: os.write(place, b'{}\\n\\xff\\n' * 100)\n    except OSError: pass\nprint('over')";
     assert_eq!(run(&mut session, noise)["stdout"], "over\n");
     assert_eq!(run(&mut session, "print(get_vars())")["stdout"], "{'current_day': 0}\n");
@@ -177,7 +177,7 @@ fn on_linux_a_script_is_fenced_in() {
     let file = folder.path().join("file");
     std::fs::write(&file, "kept").expect("a file");
     let file = file.display().to_string();
-    // Only where the kernel has Landlock.
+    // Only if the kernel has Landlock.
     let fence = "import ctypes\nprint(ctypes.CDLL(None).syscall(444, None, 0, 1))";
     let has_fence = run(&mut session, fence)["stdout"].as_str().is_some_and(|text| !text.starts_with('-'));
     let mut forbidden = vec![
@@ -211,7 +211,7 @@ fn records_hold_what_was_said_and_run_nothing() {
     let runs = tempfile::tempdir().expect("a folder");
     let Some(mut session) = run_with_python(Storage::Runs(runs.path().to_owned())) else { return };
     let folder = session.folder().expect("a folder").to_owned();
-    // No two runs of it say the same.
+    // Its output differs in each run.
     let code = "# python\nimport time\nprint(query('SELECT count(*) AS n FROM ledger'), time.time_ns())";
     call(&mut session, "register_daily_calculation", json!({ "name": "now", "code": code }));
     call(&mut session, "register_daily_calculation", json!({ "name": "wrong", "code": "# python\n1 / 0" }));
@@ -231,7 +231,7 @@ fn records_hold_what_was_said_and_run_nothing() {
     assert_eq!(
         asked.collect::<Vec<_>>(),
         [(Some(QuerySource::Script), Some(1))],
-        "calculations are no lines"
+        "calculations are not lines"
     );
     assert_eq!(verify(&folder).expect("it verifies").states, 1);
     std::fs::remove_file(folder.join("snapshot.bin")).ok();
@@ -240,7 +240,7 @@ fn records_hold_what_was_said_and_run_nothing() {
     assert!(session.remarks().join(" ").contains("Calculations in Python run before each week: now, wrong."));
     week(&mut session);
 
-    // Decisions that are played again start nothing, whatever was registered before them.
+    // A re-simulation does not run registered calculations.
     let again = branch_with_decisions(&session, 2, &[], Mode::Sandbox, &mut |_| ControlFlow::Continue(()));
     let branch = again.unwrap_or_else(|refusal| panic!("{refusal}")).session;
     assert_eq!(branch.state_hash(), session.state_hash());

@@ -1,4 +1,4 @@
-//! Queries of the library, whose figures are counted again from single rows of the tables.
+//! Bundled queries, compared with counts of single rows of the tables.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 use crate::support::company::{call, number, numbers, rows};
 
-/// A company of few people and many companies, after some weeks of offers at two prices.
+/// Returns a company with few individuals and many enterprises, after some weeks of offers at two prices.
 fn company_with_offers() -> Session {
     let new = NewRun { seed: Some(11), cash: Some(20_000_000.0), ..NewRun::default() };
     let mut session = Session::create(new, &Configuration::shipped()).expect("the run begins");
@@ -28,7 +28,7 @@ fn company_with_offers() -> Session {
     }
     while session.day() < 84 {
         let waiting = session.company().observe().waiting;
-        // Every third company is left without an answer.
+        // Every third enterprise gets no reply.
         let offered = waiting.iter().filter(|thread| thread.thread % 3 != 0).map(|thread| {
             let price = if thread.thread % 2 == 0 { 19.5 } else { 130.0 };
             json!([thread.customer, [["C", price], ["B", 12.0]]])
@@ -53,7 +53,6 @@ fn answer(session: &mut Session, name: &str) -> Rows {
     session.query(&query.sql).unwrap_or_else(|refusal| panic!("{name}: {refusal}"))
 }
 
-/// A column of a result.
 fn column(rows: &Rows, name: &str) -> usize {
     rows.columns.iter().position(|own| own == name).unwrap_or_else(|| panic!("no column {name}"))
 }
@@ -63,7 +62,7 @@ fn sum(rows: &Rows, name: &str) -> f64 {
     rows.rows.iter().map(|row| number_at(row, at)).sum()
 }
 
-/// Rows of a statement that ends with a condition, of more customers than one answer holds.
+/// Returns the rows of a statement that ends with a condition, beyond the row limit of one query.
 fn in_parts(session: &mut Session, sql: &str) -> Vec<Vec<f64>> {
     (0..8).flat_map(|part| numbers(session, &format!("{sql} AND customer_id % 8 = {part}"))).collect()
 }
@@ -91,7 +90,7 @@ fn bills_that_are_due_are_paid_by_those_who_stay() {
         assert_eq!(number_at(row, column(&due, "customers")), billed.len() as f64, "day {day}");
         let dollars = billed.iter().map(|own| own[2]).sum::<f64>();
         assert!((number_at(row, column(&due, "dollars_due")) - dollars).abs() < 0.01, "day {day}");
-        // Nothing was changed meanwhile: who keeps the same terms pays what was due.
+        // No prices changed: subscribers with the same terms pay the same amount.
         let paid = format!(
             "SELECT CAST(replace(note, 'Subscription payment from customer ', '') AS INTEGER), amount
              FROM ledger WHERE category = 'subscription_payment' AND day = {day}"

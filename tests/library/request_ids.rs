@@ -1,4 +1,4 @@
-//! Requests with an id run once, in one session, after it was reopened, and after a kill in the middle of a week.
+//! Requests with an id run only once: within a session, after reopening the run, and after a kill during a week.
 
 use std::fs;
 use std::path::Path;
@@ -11,10 +11,9 @@ use serde_json::{Value, json};
 
 use crate::durability::run::{create, open, runs};
 
-/// Lets a week pass over HTTP.
 fn week(session: &mut Session, rationale: &str, expected_day: Value, id: &str) -> Result<Value, String> {
     let predictions = session.company().naive_forecasts().as_predictions();
-    // The same forecasts each time: they are part of what is asked.
+    // The forecasts are part of the digest, so they must not change.
     let predictions = if rationale == "naive" { predictions } else { fixed() };
     let request = WeekRequest {
         rationale: &json!(rationale),
@@ -41,7 +40,6 @@ fn call(session: &mut Session, tool: &str, args: Value, id: &str) -> Result<Valu
     session.call_once(tool, &args, Via::Http, &json!(id)).map_err(|refusal| refusal.code)
 }
 
-/// Lines of a kind in the record.
 fn count(folder: &Path, kind: &str) -> usize {
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads");
     trajectory.lines.iter().filter(|line| line.record.kind() == kind).count()
@@ -75,7 +73,7 @@ fn a_retry_returns_the_first_answer_also_after_the_run_was_reopened() {
     retry(&mut session);
     session.save().expect("it is saved");
     drop(session);
-    // From the snapshot, and from the lines alone.
+    // With the snapshot, and from the lines alone.
     let mut session = open(&folder);
     retry(&mut session);
     drop(session);
@@ -96,7 +94,7 @@ fn another_payload_another_day_and_strange_ids_are_refused() {
     let mut session = create(place.path(), 7, 28);
     let code = |refused: Result<Value, String>| refused.expect_err("a refusal");
     call(&mut session, "set_prices", json!({ "A": 12, "B": 25 }), "x").expect("prices");
-    // The order of keys is no difference.
+    // The order of keys does not matter.
     call(&mut session, "set_prices", json!({ "B": 25, "A": 12 }), "x").expect("the first answer");
     assert_eq!(
         code(call(&mut session, "set_prices", json!({ "A": 13 }), "x")),
@@ -121,7 +119,7 @@ fn another_payload_another_day_and_strange_ids_are_refused() {
     assert_eq!(code(week(&mut session, "on", json!("0"), "v")), "wrong_type");
     assert_eq!(session.day(), 0);
     week(&mut session, "on", json!(0), "w0").expect("a week");
-    // The refusal stays what it was, though the run is on that day now.
+    // The rejection is repeated, although the run has reached that day.
     assert_eq!(code(week(&mut session, "on", json!(7), "w")), "unexpected_day");
     assert_eq!(session.day(), 7);
 }
@@ -135,7 +133,7 @@ fn a_week_that_a_kill_interrupted_answers_the_retry() {
     let first = week(&mut session, "on", Value::Null, "w1").expect("a week");
     session.save().expect("it is saved");
     drop(session);
-    // What a kill leaves behind after the line of the request: nothing that follows it.
+    // A kill directly after the line of the request.
     let path = folder.join("trajectory.jsonl");
     let text = fs::read_to_string(&path).expect("a trajectory");
     let at = text.match_indices("\"kind\":\"advance\"").nth(1).expect("a second week").0;
@@ -162,7 +160,7 @@ fn a_branch_keeps_the_ids_of_the_lines_that_it_shares() {
     let mut branch = session.branch(2, Mode::Sandbox).expect("a branch");
     assert_eq!(call(&mut branch, "set_prices", json!({ "A": 12 }), "p"), Ok(first));
     assert_eq!(week(&mut branch, "on", Value::Null, "w0"), Ok(passed));
-    // What was decided after the branch is not in its record.
+    // Later decisions are not in the record of the branch.
     assert_eq!(branch.company().current("set_prices")["A"], 12.0);
     call(&mut branch, "set_prices", json!({ "A": 15 }), "q").expect("a new request");
     assert_eq!(branch.company().current("set_prices")["A"], 15.0);

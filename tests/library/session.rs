@@ -1,4 +1,4 @@
-//! Stories of a run through the library: play, leave, continue, verify, be refused.
+//! Integration tests of a run: playing, closing, continuing, verifying, rejections.
 
 use std::path::Path;
 
@@ -250,7 +250,7 @@ fn damage_is_named_and_refused() {
     std::fs::write(&path, text.replacen("\"A\":12", "\"A\":13", 1)).expect("a change");
     let error = Session::open(&place, Access::Write, true).err().expect("damaged").to_string();
     assert!(error.contains("line 2") && error.contains("Lines 1 to 1 are good"), "{error}");
-    // Changed and chained anew, so that only the state can tell.
+    // Changed with recomputed hashes, so that only the state reveals it.
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
     lines[1] = lines[1].replace("\"A\":12", "\"A\":13");
     for at in 1..lines.len() {
@@ -452,8 +452,8 @@ fn a_post_is_read_judged_answered_and_told_about() {
     open_shop(&mut session);
     weeks(&mut session, 2);
     let complaint = number(&mut session, "SELECT max(post_id) FROM social_media_posts WHERE day % 7 = 0");
-    assert!(complaint > 0.0, "customers were heard on the seventh day");
-    // A real discount, said to those who look for one.
+    assert!(complaint > 0.0, "customers posted on the seventh day");
+    // A real discount, posted for a group that values discounts.
     call(&mut session, "set_promotion", json!({"by_group": {"S1": 2}}));
     let content = "Every plan is $2 off from today: no tricks, cancel anytime. We cut the price because students asked for \
                    it, and the discount stays free of small print. Tell the community forum what you think.";

@@ -1,4 +1,4 @@
-//! The 19 tables: their columns, and that rows appear on the day on which they are due.
+//! The 19 tables: their columns, and the days on which rows appear.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ fn create(overrides: &[(&str, &str)]) -> Session {
     Session::create(new, &Configuration::shipped()).expect("the run begins")
 }
 
-/// Opens shop with two channels, one of them for two groups, one of which gets nothing.
+/// Starts a company with two channels, one of them for two groups, one of which has no budget.
 fn fund_two_channels(session: &mut Session) {
     call(session, "set_prices", json!({"A": 12, "B": 25, "C": 55}));
     call(session, "set_model_tiers", json!({"B": 2, "C": 4}));
@@ -30,7 +30,7 @@ fn fund_two_channels(session: &mut Session) {
     );
 }
 
-/// A company that companies come to, and that never answers them.
+/// Returns a company with enterprise leads that never get a reply.
 fn open_for_companies() -> Session {
     let new =
         NewRun { seed: Some(7), days: Some(140), cash: Some(20e6), mode: Mode::Debug, ..NewRun::default() };
@@ -44,14 +44,13 @@ fn open_for_companies() -> Session {
     session
 }
 
-/// Single days, over the ends of weeks.
+/// Simulates single days across the ends of weeks.
 fn days(session: &mut Session, count: u32) {
     for _ in 0..count {
         session.step(1, &mut |_| {}).expect("a day");
     }
 }
 
-/// Asserts that no row fits a condition.
 fn never(session: &mut Session, table: &str, condition: &str) {
     let found = rows(session, &format!("SELECT * FROM {table} WHERE {condition} LIMIT 3"));
     assert!(found.is_empty(), "{table} where {condition}: {found:?}");
@@ -137,7 +136,7 @@ fn customers_and_subscriptions_come_together() {
         "subscriptions",
         "contract_months <> 1 OR pending_plan IS NOT NULL OR pending_price IS NOT NULL",
     );
-    // Who found nothing is lost on the day of arrival; nothing of it ends later.
+    // Leads without an acceptable plan are lost on the same day and have no end day.
     never(&mut session, joined, "customer_type = 'small' AND status = 'lost' AND end_day IS NOT NULL");
     never(&mut session, joined, "customer_type = 'small' AND (status = 'lead' OR plan = 'pending')");
     never(
@@ -151,7 +150,7 @@ fn customers_and_subscriptions_come_together() {
         "status = 'cancelled' AND (end_day IS NULL OR end_day % 30 <> start_day % 30)",
     );
     never(&mut session, "subscriptions", "status = 'subscribed' AND end_day IS NOT NULL");
-    // Nobody answers the companies here: a lead is lost after seven days.
+    // Enterprises get no reply here: a lead is lost after seven days.
     never(&mut session, joined, "customer_type = 'large' AND plan <> 'pending'");
     never(&mut session, joined, "customer_type = 'large' AND status = 'lead' AND start_day <= 63");
     never(&mut session, joined, "customer_type = 'large' AND status = 'lost' AND end_day <> start_day + 7");
@@ -172,7 +171,7 @@ fn usage_service_and_settings_follow_the_days() {
     call(&mut session, "set_prices", json!({"A": 13}));
     call(&mut session, "set_prices", json!({"A": 14}));
     days(&mut session, 32);
-    // A subscriber's first usage is that of the day after the start; rows older than 30 days go on days of tens.
+    // The first usage of a subscriber is on the day after the start; rows older than 30 days are deleted every ten days.
     let first = "SELECT count(*) FROM (SELECT min(day) AS first, customer_id FROM daily_usage GROUP BY 2) \
                  JOIN subscriptions USING (customer_id) WHERE start_day >= 10 AND first <> start_day + 1";
     assert_eq!(number(&mut session, first), 0.0);
@@ -187,7 +186,7 @@ fn usage_service_and_settings_follow_the_days() {
         "service_day",
         "downtime_minutes NOT IN (0, 10, 30, 90) OR error_rate NOT BETWEEN 0 AND 1",
     );
-    // One row a day with the changes of the day; days without a call have none.
+    // One row per day with changes; days without a call have none.
     let history = rows(
         &mut session,
         "SELECT day, price_A, price_B, capacity_tier, spend_advertising FROM config_history",
@@ -218,7 +217,7 @@ fn overrides_keep_the_whole_family_after_every_call() {
     let ops = r#"{"by_group": {"E1": 30.0}, "by_plan": {"A": 10.0}, "by_group_plan": {}, "by_customer": {"42": 7.0}}"#;
     let none = r#"{"by_group": {"E1": 30.0}, "by_plan": {}, "by_group_plan": {}, "by_customer": {}}"#;
     let promotion = r#"{"global": 0.0, "by_group": {}, "by_customer": {}, "by_group_plan": {}}"#;
-    // Budgets of ads and development are kept as they were sent, all other amounts as numbers with a point.
+    // Budgets of ads and development keep their sent notation, all other amounts have a decimal point.
     let development = r#"{"targeted_spend": {"S1": 4000, "E1": 80.0, "S2": 0.5}}"#;
     let ads = r#"{"targeted_spend": {"linkedin": {"E1": 80, "S1": 40.0}}}"#;
     let strength = r#"{"global": 0.0, "by_group": {"S1": 1.0}, "by_customer": {}}"#;
@@ -355,7 +354,7 @@ fn research_discovery_and_the_economy_are_announced() {
     assert_eq!(level(&mut session, &group), levels([3, 1, 7, 12]));
     assert!(notice(&mut session, "group_research_complete")[1].1.contains("refreshed"));
 
-    // Readings of the economy come a month late.
+    // Readings of the economy are published a month later.
     days(&mut session, 30 - 17);
     assert_eq!(number(&mut session, "SELECT count(*) FROM macroeconomic_conditions"), 0.0);
     let running =
@@ -383,7 +382,7 @@ fn funded_channels_have_a_row_a_day_and_ads_one_per_subscriber() {
     let mut session = create(&[]);
     fund_two_channels(&mut session);
     days(&mut session, 35);
-    // Nothing is spent on the third pair, so it has no rows.
+    // The third pair has no budget, so it has no rows.
     let pairs = rows(
         &mut session,
         "SELECT channel_id, group_id, count(*), sum(leads_generated) > 0 FROM ad_channel_leads GROUP BY 1, 2",
@@ -409,7 +408,6 @@ fn funded_channels_have_a_row_a_day_and_ads_one_per_subscriber() {
     assert_eq!(number(&mut session, earned), 1.0);
 }
 
-/// One issue, put together from the facts of the days.
 #[derive(Debug, Clone, PartialEq)]
 struct Issue {
     customer: u32,
@@ -444,7 +442,7 @@ fn issues_are_exactly_what_happened() {
                     .issues_resolved
                     .iter()
                     .any(|number| active_before.contains(&issues[number].customer));
-                // Support looks at nobody on days without an open issue of an active subscriber.
+                // Issues do not age on days without an open issue of an active subscriber.
                 if waits || had {
                     let waiting = issues.values_mut().filter(|issue| issue.resolved_day.is_none());
                     waiting.for_each(|issue| issue.days_open += 1);
@@ -484,7 +482,7 @@ fn issues_are_exactly_what_happened() {
         .collect();
     let shown = expected.len().min(5000);
     assert_eq!(rows(&mut session, sql), expected[..shown]);
-    // Tickets of customers who left stay open for ever.
+    // Issues of former customers stay open forever.
     let left = "SELECT count(*) FROM issues JOIN subscriptions USING (customer_id) \
                 WHERE issues.status = 'open' AND subscriptions.status = 'cancelled'";
     assert!(number(&mut session, left) > 0.0);

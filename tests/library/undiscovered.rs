@@ -1,5 +1,5 @@
-//! The file of the database, read raw as any tool can: of groups that nobody has found it holds their identifiers, which
-//! players may see in `group_info_levels`, and nothing else.
+//! The raw bytes of the database file: of undiscovered groups it has only the identifiers, which are visible in
+//! `group_info_levels`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -15,7 +15,7 @@ use serde_json::json;
 
 use crate::support::company::{call, open_shop, week, weeks};
 
-/// What would tell something of a group: its name, and the words of its trade that no group known from the start uses.
+/// Returns the words that would reveal a group: its name, and profile words that no initially known group uses.
 fn telling(group: Group, params: &Params) -> BTreeSet<String> {
     let words = |group: Group| {
         let own = &params.personas.group[group.index()];
@@ -35,14 +35,14 @@ fn telling(group: Group, params: &Params) -> BTreeSet<String> {
     };
     let known: BTreeSet<String> =
         Group::all().filter(|other| other.initially_known()).flat_map(words).collect();
-    // A known word may have another in it: Chief Compliance Officer, Compliance Officer.
+    // A known word can contain another one: Chief Compliance Officer, Compliance Officer.
     let own = words(group)
         .into_iter()
         .filter(|word| word.contains([' ', '-']) && !known.iter().any(|other| other.contains(word.as_str())));
     own.chain([params.group(group).name.clone()]).collect()
 }
 
-/// The bytes of the database and of what was not merged into it yet.
+/// Returns the bytes of the database and its write-ahead log.
 fn bytes(folder: &Path) -> Vec<u8> {
     ["world.db", "world.db-wal"]
         .iter()
@@ -50,12 +50,12 @@ fn bytes(folder: &Path) -> Vec<u8> {
         .collect()
 }
 
-/// As it is written in the parameters: other texts, such as the names of news desks, begin with capitals.
+/// Case-sensitive, because other texts, such as names of media, start with capitals.
 fn contains(bytes: &[u8], text: &str) -> bool {
     memchr::memmem::find(bytes, text.as_bytes()).is_some()
 }
 
-/// Every text of every table, those inside too, by table and column.
+/// Returns all texts of all tables, including internal ones, by table and column.
 fn texts(folder: &Path) -> BTreeMap<String, BTreeSet<String>> {
     let connection = Connection::open(folder.join("world.db")).expect("a database");
     let mut names =
@@ -78,7 +78,7 @@ fn texts(folder: &Path) -> BTreeMap<String, BTreeSet<String>> {
     all
 }
 
-/// What the file says of groups that are not among these.
+/// Returns the words of groups in the file that are not among `known`.
 fn check(session: &mut Session, found: &BTreeSet<Group>) {
     session.save().expect("saved");
     let folder = session.folder().expect("a folder").to_owned();
@@ -88,7 +88,7 @@ fn check(session: &mut Session, found: &BTreeSet<Group>) {
     for group in Group::all().filter(|group| !group.initially_known()) {
         let known = found.contains(&group);
         let own = telling(group, params);
-        // Nor a word that another one holds which was found.
+        // Words that are part of a found word do not count.
         for word in own.iter().filter(|word| !used.iter().any(|other| other.contains(word.as_str()))) {
             assert!(known || !contains(&bytes, word), "{word} of {group} is in the file");
         }
@@ -130,7 +130,7 @@ fn the_file_tells_nothing_of_groups_that_nobody_has_found() {
     }
     weeks(&mut session, 4);
     check(&mut session, &found);
-    // Opened again it goes on with the same words.
+    // After reopening, the words are the same.
     let folder = session.folder().expect("a folder").to_owned();
     drop(session);
     let mut session = super::durability::run::open(&folder);

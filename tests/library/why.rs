@@ -1,4 +1,4 @@
-//! Why a figure changed: figures of groups are those of breakpoints and of the tables, and hidden ones stay hidden.
+//! Causes of changes: figures of groups equal those of breakpoints and of the tables, and hidden ones stay hidden.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -20,7 +20,7 @@ fn why(session: &Session, text: &str) -> Result<Why, Refusal> {
     Ok(causes.why(asked(text), &|_| ControlFlow::Continue(()))?.expect("it is not stopped"))
 }
 
-/// Some weeks, then one with dearer plans.
+/// Plays some weeks, then one with higher prices.
 fn run_in(folder: &Path) -> Session {
     let mut session = begin_run(folder, Mode::Debug, 140);
     open_shop(&mut session);

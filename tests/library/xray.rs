@@ -1,4 +1,4 @@
-//! The x-ray: who may look, what a look leaves behind, and whether what it shows is what happened.
+//! The x-ray: permissions, recorded lines, and the correctness of the shown values.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -41,7 +41,7 @@ fn an_unfinished_baseline_sandbox_or_lesson_run_is_not_looked_into() {
         let place = session.folder().expect("a folder").to_owned();
         let lines = || Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines.len();
         let before = lines();
-        // The refusal is the same whatever is asked for: a known group, an unknown one, a day that is not there.
+        // The rejection is the same for a known group, an unknown one, and a missing day.
         let told: Vec<String> =
             [(s2(), None), (Group::at(25).expect("a group"), Some(3)), (s2(), Some(9000))]
                 .into_iter()
@@ -51,8 +51,8 @@ fn an_unfinished_baseline_sandbox_or_lesson_run_is_not_looked_into() {
                 .collect();
         assert!(told.iter().all(|one| *one == told[0]), "{told:?}");
         assert_eq!(told[0], "not_in_this_mode: the x-ray works in debug runs and in runs that are over");
-        assert_eq!(lines(), before, "nothing was looked at, so nothing is recorded");
-        // Whoever gives it up may look, and cannot go on.
+        assert_eq!(lines(), before, "no inspection happened, so no line is recorded");
+        // After abandoning the run, the user can inspect it, but not continue it.
         session.end().expect("it ends");
         assert_eq!(session.inspect().lead_equations(s2(), Some(3)).expect("a look").len(), 3);
         drop(session);
@@ -75,7 +75,7 @@ fn looking_changes_no_hash_and_each_look_is_a_line() {
     watched.inspect().lead_equations(s2(), Some(2)).expect("a look");
     watched.step(3, &mut |_| {}).expect("days");
     alone.step(3, &mut |_| {}).expect("days");
-    // In the middle of a week, after a call, and of an earlier day.
+    // Within a week, after a call, and for an earlier day.
     for session in [&mut watched, &mut alone] {
         session.call("set_prices", &json!({"A": 13}), Via::Script).expect("a price");
     }
@@ -148,7 +148,7 @@ fn the_lead_equation_comes_to_the_expectation_that_numbers_are_drawn_around() {
 fn individual(session: &mut Session, customer: u32, day: Option<u32>) -> CustomerLens {
     match session.inspect().lens(customer, day).expect("a look") {
         Lens::Individual(lens) => *lens,
-        Lens::Company(_) => panic!("customer {customer} is a company"),
+        Lens::Company(_) => panic!("customer {customer} is an enterprise"),
     }
 }
 
@@ -204,7 +204,7 @@ fn the_lens_says_what_the_tables_say_of_a_customer() {
                 assert_eq!(column(&mut session, &sql), [f64::from(since)], "customer {customer}");
                 *seen.entry("with an issue").or_insert(0) += 1;
             }
-            // An earlier day is a beginning of the same.
+            // The result for an earlier day is a prefix.
             let shown = lens.first.day + 1;
             if shown <= last_day {
                 let earlier = individual(&mut session, customer, Some(shown));
@@ -228,7 +228,7 @@ fn the_lens_says_what_the_tables_say_of_a_customer() {
     assert_eq!(refused(&mut sandbox, u32::MAX, Some(3)), "not_in_this_mode");
 }
 
-/// A debug run that courts companies and offers each what it asked for, or a little less.
+/// Plays a debug run that offers each enterprise its requested price or slightly less.
 pub fn courted(folder: &Path, count: u32) -> Session {
     let new = NewRun {
         seed: Some(11),
@@ -267,7 +267,7 @@ pub fn courted(folder: &Path, count: u32) -> Session {
 fn the_lens_of_a_company_foresees_the_answers_that_it_gave() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = courted(folder.path(), 10);
-    // Answers: turns of companies after one of the player's.
+    // Replies: turns of enterprises after one of the player.
     let sql = "SELECT customer_id, thread_id, day, offer_json FROM enterprise_turns AS own \
                WHERE sender = 'customer' AND EXISTS (SELECT 1 FROM enterprise_turns AS other \
                WHERE other.thread_id = own.thread_id AND other.sender = 'agent' \
@@ -309,7 +309,7 @@ fn the_lens_of_a_company_foresees_the_answers_that_it_gave() {
     assert!(accepted > 3 && named > 3, "{accepted} {named}");
 }
 
-/// Numbers of leads scatter around their expectations as a Poisson distribution does: Pearson's statistic over 1,000 days.
+/// Lead counts follow a Poisson distribution around their expectations: Pearson's statistic over 1,000 days.
 #[test]
 fn residuals_of_a_thousand_days_are_those_of_a_poisson_distribution() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -368,7 +368,7 @@ fn a_run_that_is_only_read_is_not_looked_into() {
     assert_eq!(read.inspect().lead_equations(s2(), None).expect_err("a refusal").code, "read_only");
     assert_eq!(read.inspect().xray_query("SELECT 1", None).expect_err("a refusal").code, "read_only");
     assert_eq!(read.inspect().difference_of_days(3, 4).expect_err("a refusal").code, "read_only");
-    // What is hidden is asked in another way, and that is said where it may be asked.
+    // Errors mention hidden tables only on connections that have them.
     let refused = read.query("SELECT * FROM hidden.customers").expect_err("no such table");
     assert!(refused.message.contains("query --xray"), "{refused}");
     drop(read);

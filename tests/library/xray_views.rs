@@ -1,4 +1,4 @@
-//! The views of groups, of the market and of draws: who may look, what a look leaves behind, and what is refused.
+//! Views of groups, of the market and of random draws: permissions, recorded lines, and rejections.
 
 use std::path::Path;
 
@@ -20,7 +20,7 @@ fn run_in(folder: &Path, mode: Mode) -> Session {
     session
 }
 
-/// What every view says of a group and a day, refused or shown.
+/// Returns the output or the rejection of every view for a group and a day.
 fn views(session: &mut Session, group: &str, day: Option<u32>) -> Vec<Result<(), Refusal>> {
     let group = Group::parse(group).expect("a group");
     let mut inside = session.inspect();
@@ -44,7 +44,7 @@ fn no_view_is_shown_of_an_unfinished_baseline_sandbox_or_lesson_run() {
         let place = session.folder().expect("a folder").to_owned();
         let lines = || Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines.len();
         let before = lines();
-        // The refusal is the same whatever is asked for: days that are there, that are not, draws of any number.
+        // The rejection is the same for existing and missing days and for any number of draws.
         let mut told = views(&mut session, "S1", None);
         told.extend(views(&mut session, "D_E10", Some(3)));
         told.extend(views(&mut session, "S1", Some(9000)));
@@ -58,7 +58,7 @@ fn no_view_is_shown_of_an_unfinished_baseline_sandbox_or_lesson_run() {
             let refusal = answer.expect_err("hidden").to_string();
             assert_eq!(refusal, "not_in_this_mode: the x-ray works in debug runs and in runs that are over");
         }
-        assert_eq!(lines(), before, "nothing was looked at, so nothing is recorded");
+        assert_eq!(lines(), before, "no inspection happened, so no line is recorded");
         session.end().expect("it ends");
         assert!(views(&mut session, "S1", Some(3)).into_iter().all(|answer| answer.is_ok()));
         session.inspect().next_draws(DrawnPart::Service, None).expect("a look");

@@ -124,7 +124,8 @@ fn a_middle_line_that_was_edited_and_summed_anew_is_refused_by_the_next() {
     let at = cheaper(&mut lines);
     fs::write(&path, written(lines, false)).expect("written");
     let next = format!("line {}", at + 2);
-    home.run(&["replay", &id(&run), "--verify"]).fails(3, &[&next, "does not follow from the one before"]);
+    home.run(&["replay", &id(&run), "--verify"])
+        .fails(3, &[&next, "does not have the hash of the previous line"]);
 }
 
 #[test]

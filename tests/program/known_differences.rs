@@ -142,35 +142,35 @@ fn columns(answer: &Value) -> Vec<&str> {
 type Example = (&'static str, fn(&Stage));
 
 const IN_INSTRUCTIONS: [Example; 6] = [
-    ("how likely an outage is", |stage| {
+    ("the probability of an outage", |stage| {
         stage.manual_says("set_daily_spend", &["probability", "solve open issues"]);
         stage.manual_says("set_targeted_ops_spend", &["a day per dollar"]);
         stage.term_says("outage", &["probability"]);
         stage.term_says("operations", &["for each dollar"]);
     }),
-    ("what development adds", |stage| {
+    ("the effect of development", |stage| {
         stage.manual_says("set_daily_spend", &["Development raises the quality", "ln(1 + spend"]);
         stage.manual_says("set_targeted_dev_spend", &["ln(1 + spend"]);
         stage.term_says("development", &["ln(1 + spend"]);
     }),
-    ("that the quality customers perceive", |stage| {
+    ("the rise of perceived quality", |stage| {
         stage.term_says("perceived quality", &["days as a subscriber"]);
     }),
-    ("the bands of the economy's index", |stage| {
+    ("the ranges of the economy's index", |stage| {
         stage.term_says("PMI", &["expansion from", "neutral from", "contraction from"]);
     }),
-    ("what every lead costs", |stage| {
+    ("the cost of every lead,", |stage| {
         stage.manual_says("set_targeted_ad_spend", &["for every lead"]);
         stage.term_says("lead acquisition cost", &["a lead"]);
     }),
-    ("what a late answer to a company costs", |stage| {
+    ("the cost of a late reply to an", |stage| {
         stage.manual_says("send_enterprise_deal", &["of the relationship", "the thread ends"]);
         stage.term_says("turn", &["of its relationship for each further day"]);
     }),
 ];
 
 const TOLD_TO_PEOPLE: [Example; 15] = [
-    ("what needs attention", |stage| {
+    ("the situations that need", |stage| {
         let needs = stage.play(&["--seed", "3"], "needs\n");
         let needs = list(&needs[1]["data"]["needs"]);
         assert!(needs.iter().any(|need| !need["call"].is_null()), "{needs:?}");
@@ -178,34 +178,34 @@ const TOLD_TO_PEOPLE: [Example; 15] = [
         let facts = list(&facts[1]["data"]["needs"]);
         assert!(!facts.is_empty() && facts.iter().all(|need| need["call"].is_null()), "{facts:?}");
     }),
-    ("that a company that threatens to leave", |stage| {
+    ("the fact that an enterprise that", |stage| {
         stage.term_says("retention thread", &["pays nothing"]);
         assert!(stage.story("inbox")["threads"][0]["days_left"].is_u64());
     }),
-    ("the number and group of the company", |stage| {
+    ("the number and group of the enterprise", |stage| {
         let rows = list(&stage.story("sql SELECT message")["rows"]);
         has(rows[0]["message"].as_str().expect("a message"), &["Customer ", "(E1, "]);
     }),
-    ("a name for every company", |stage| {
+    ("a name for every enterprise,", |stage| {
         let shown = &stage.story("inbox")["threads"][0]["company"];
         assert!(shown.as_str().is_some_and(|name| !name.is_empty()), "{shown}");
         assert!(!stage.story("sql SELECT * FROM enterprise_turns").to_string().contains("company"));
     }),
-    ("the quality delivered beside", |stage| {
+    ("the delivered quality next to", |stage| {
         let group = &stage.story("fit")["groups"][0];
         assert!(group["floor"]["least"].is_f64() && group["plans"][0]["quality"].is_f64(), "{group}");
     }),
-    ("how many leads came", |stage| {
+    ("the numbers of leads,", |stage| {
         assert!(stage.story("fit")["groups"][0]["last_4_weeks"]["leads"].is_u64());
         let funnel = &stage.story("inbox")["funnels"][0];
         assert!(["came", "no_plan_good_enough", "asked", "signed"].iter().all(|name| funnel[name].is_u64()));
     }),
-    ("for each thread the offers made so far", |stage| {
+    ("for each thread, all offers,", |stage| {
         let thread = &stage.story("inbox")["threads"][0];
         let names = ["offers_so_far", "last_offer", "asked", "asked_plan", "needed_quota"];
         assert!(names.iter().all(|name| thread.get(name).is_some()), "{thread}");
     }),
-    ("what became of new leads", |stage| {
+    ("the outcome of new leads", |stage| {
         assert!(list(&stage.story("queries first-offers")["rows"])[0]["signed_percent"].is_number());
     }),
     ("the change of cash in the last week", |stage| {
@@ -223,18 +223,18 @@ const TOLD_TO_PEOPLE: [Example; 15] = [
         has(&stage.afterwards("check set_prices C=20\n"), &["gross margins", "plan C"]);
         assert!(stage.story("changes")["alike_plans"].is_array());
     }),
-    ("next week's peak of usage", |stage| {
+    ("next week's peak usage at", |stage| {
         assert!(stage.story("status")["next_peak_at_last_growth"].is_number());
     }),
-    ("how R&D projects of a tier spread", |stage| {
+    ("the distributions of duration", |stage| {
         assert!(stage.story("check start_research")["research"]["spread"].is_object());
         let check = stage.baseline("check start_research_project tier=1\n");
         assert!(check[1]["data"]["research"]["spread"].is_null(), "{}", check[1]);
     }),
-    ("how earlier forecasts did", |stage| {
+    ("the accuracy of earlier forecasts", |stage| {
         assert!(list(&stage.story("queries forecast-record")["rows"])[0]["inside"].is_number());
     }),
-    ("what a word, figure, table or column means", |stage| {
+    ("the meaning of a term, figure,", |stage| {
         stage.term_says("daily_usage", &["daily_usage"]);
         assert!(!stage.story("glossary cohort")["terms"][0]["text"].is_null());
     }),
@@ -254,12 +254,12 @@ const DONE_BY_PEOPLE: [Example; 5] = [
         assert_eq!(exported.code, 0, "{}", exported.err);
         has(&std::fs::read_to_string(tables.join("weeks.csv")).expect("weeks"), &["undone"]);
     }),
-    ("A person can answer waiting companies by", |stage| {
+    ("A person can answer waiting enterprises", |stage| {
         let sent = stage.story("rules send");
         assert!(sent["rules"][0]["companies"].as_u64() > Some(0), "{sent}");
         assert_eq!(sent["calls"][0]["tool"], "send_enterprise_deal");
     }),
-    ("A sandbox run can have", |stage| {
+    ("A sandbox run can use [a", |stage| {
         has(&stage.home.run(&["play", "--help"]).out, &["--voice"]);
     }),
     ("A person sees charts", |stage| {
@@ -279,22 +279,22 @@ const ARGUMENTS_AND_ANSWERS: [Example; 15] = [
         let args = json!({ "A": 1, "B": 1, "C": 1, "D": 1 });
         stage.refuses("set_usage_quotas", args, "unknown_argument");
     }),
-    ("takes `true` and `false`", |stage| {
+    ("accepts `true` and `false`", |stage| {
         stage.refuses("set_capacity_tier", json!({ "tier": true }), "capacity_out_of_range");
         stage.refuses("set_prices", json!({ "A": true }), "wrong_type");
     }),
-    ("answers a value of the wrong kind", |stage| {
+    ("answers a value of the wrong", |stage| {
         let (status, answer) = stage.server.post("/call", &json!({"tool": "set_prices", "args": {"A": "x"}}));
         assert_eq!((status, &answer["code"], &answer["field"]), (200, &json!("wrong_type"), &json!("A")));
     }),
-    ("takes *set_capacity_tier* without a tier", |stage| {
+    ("treats *set_capacity_tier* without", |stage| {
         stage.refuses("set_capacity_tier", json!({}), "argument_missing");
     }),
-    ("takes *set_targeted_ad_spend* and *set_targeted_dev_spend* without arguments", |stage| {
+    ("treats *set_targeted_ad_spend*", |stage| {
         stage.refuses("set_targeted_ad_spend", json!({}), "argument_missing");
         stage.refuses("set_targeted_dev_spend", json!({}), "argument_missing");
     }),
-    ("takes texts and truth values as forecasts", |stage| {
+    ("accepts texts and Booleans as", |stage| {
         for point in [json!("1000000"), json!(true)] {
             let mut week = json!({ "rationale": "on", "predictions": predictions() });
             week["predictions"]["cash_1wk"]["point"] = point;
@@ -302,7 +302,7 @@ const ARGUMENTS_AND_ANSWERS: [Example; 15] = [
             assert_eq!((status, &answer["code"]), (400, &json!("prediction_not_number")), "{answer}");
         }
     }),
-    ("takes amounts of any size", |stage| {
+    ("accepts amounts of any size", |stage| {
         stage.refuses("set_prices", json!({ "A": 1e10 }), "amount_too_large");
     }),
     ("returns a tier that was sent", |stage| {
@@ -313,7 +313,7 @@ const ARGUMENTS_AND_ANSWERS: [Example; 15] = [
         stage.refuses("set_targeted_ops_spend", args, "unknown_plan");
         assert_eq!(stage.data("set_targeted_ops_spend", json!({ "by_plan": {} }))["by_group"], json!({}));
     }),
-    ("takes the scope of *set_targeted_ops_spend*", |stage| {
+    ("accepts the scope of *set_targeted_ops_spend*", |stage| {
         let set = stage.data("set_targeted_ops_spend", json!({ "by_plan": {"A": 10} }));
         assert_eq!(set["by_plan"].to_string(), r#"{"A":10.0}"#);
     }),
@@ -324,7 +324,7 @@ const ARGUMENTS_AND_ANSWERS: [Example; 15] = [
     ("documents tools 24 to 34", |stage| {
         assert_eq!(stage.data("list_scripts", json!({}))["scripts"], json!([]));
     }),
-    ("`error` in its own words", |stage| {
+    ("`error` with its own texts", |stage| {
         let answer = stage.call("reject_enterprise_deal", json!({ "deals": [5, 6] }));
         assert_eq!(
             (&answer["code"], &answer["data"]),
@@ -344,7 +344,7 @@ const ARGUMENTS_AND_ANSWERS: [Example; 15] = [
 ];
 
 const TIME: [Example; 2] = [
-    ("steps on after its last day", |stage| {
+    ("continues after its last day", |stage| {
         let answers = stage.play(&["--days", "8"], "next naive\nnext naive\nset_prices A=5\nnext naive\n");
         assert_eq!((&answers[2]["data"]["day"], &answers[2]["data"]["days_run"]), (&json!(8), &json!(1)));
         assert!(answers[3..5].iter().all(|answer| answer["code"] == "run_over"), "{answers:?}");
@@ -358,12 +358,12 @@ const TIME: [Example; 2] = [
 ];
 
 const QUERIES: [Example; 9] = [
-    ("drops hidden columns", |stage| {
+    ("removes hidden columns", |stage| {
         for sql in ["SELECT c_max AS x FROM customers", "SELECT AVG(c_max) FROM customers"] {
             assert_eq!(stage.query(sql)["code"], "sql_error", "{sql}");
         }
     }),
-    ("refuses a statement that has the name", |stage| {
+    ("rejects a statement that has", |stage| {
         assert_eq!(stage.query("SELECT 'events' AS x")["rows"], json!([{ "x": "events" }]));
         assert_eq!(stage.query("SELECT 'pragma' AS x")["rows"], json!([{ "x": "pragma" }]));
     }),
@@ -401,7 +401,7 @@ const QUERIES: [Example; 9] = [
         assert!(!columns(&shown).contains(&"source_group_id"), "{shown}");
         assert!(stage.story("get_social_posts")["posts"][0].get("source_group_id").is_some());
     }),
-    ("hints at `plan = 'A'`", |stage| {
+    ("reports `plan = 'A'` in", |stage| {
         let of_plan = stage.query("SELECT * FROM subscriptions WHERE plan = 'A'");
         assert_eq!((&of_plan["row_count"], &of_plan["hint"]), (&json!(0), &Value::Null), "{of_plan}");
         assert!(stage.query("SELECT * FROM subscriptions WHERE plan = 'D'")["hint"].is_string());
@@ -439,7 +439,7 @@ const DOCUMENTS_TEXTS_AND_CHANCE: [Example; 4] = [
         has(&support.to_string(), &["0.6 a day per dollar", "0.1 for companies"]);
         has(&development.to_string(), &["0.0225 ln(1 + spend / 5000)"]);
     }),
-    ("posts, letters and notices", |stage| {
+    ("posts, messages and notices", |stage| {
         assert!(
             stage.story("get_social_posts")["posts"][0]["content"]
                 .as_str()

@@ -103,8 +103,7 @@ fn a_check_names_what_a_session_of_this_length_cannot_do() {
     questionnaire("2");
     lab.edit("# week_minutes = 20", "week_minutes = 2");
     lab.edit("# warning_minutes = 2", "warning_minutes = 2");
-    lab.run("check", &[])
-        .fails(3, &["limits.warning_minutes", "week_minutes = 2 would stand from the beginning"]);
+    lab.run("check", &[]).fails(3, &["limits.warning_minutes", "week_minutes = 2 would show from the start"]);
     lab.edit("warning_minutes = 2", "warning_minutes = 1");
     lab.edit("offer = \"none\"", "offer = \"optional\"");
     let told = lab.run("check", &[]).out;

@@ -1,4 +1,4 @@
-//! A hand-out: one file a student, with what they play (docs/formats/class.md#hand-out).
+//! A hand-out: one file a student, with what they play (docs/formats/class.md#handout).
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -1,11 +1,11 @@
-//! A new database: tables and the market observer.
+//! Creating a database: tables and the market observer.
 
 use rusqlite::Connection;
 
 use novamind_world::events::{Category, Source};
 
-/// Number of the layout of the database. A file with another one is made anew: raise it with every change of
-/// `schema.sql` or of what is written into its tables.
+/// Layout version of the database. A file with another version is rebuilt. Increase it with every change of `schema.sql` or
+/// of the written rows.
 pub(crate) const LAYOUT: u32 = 5;
 
 /// Creates the tables and row 1 of `customers`: the market observer.

@@ -1,4 +1,4 @@
-//! Rows that are written at once: nothing changes them before the commit.
+//! Rows that are written immediately, because they do not change before the commit.
 
 use rusqlite::{Transaction, params};
 
@@ -25,7 +25,7 @@ pub(super) fn service(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite:
 }
 
 pub(super) fn research(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
-    // A project that is completed stays where it stands: a row that is replaced would go to the end.
+    // Keep the position of a completed project: a replaced row would move to the end.
     let mut write = transaction.prepare_cached(
         "INSERT INTO research_projects VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7) \
          ON CONFLICT (project_id) DO UPDATE SET status = excluded.status, \
@@ -136,7 +136,7 @@ pub(super) fn discovery(transaction: &Transaction<'_>, facts: &Facts) -> rusqlit
     )?;
     for (group, own) in &facts.knowledge {
         let hidden = !group.initially_known();
-        // What is known from the start was never studied.
+        // Groups that are known from the start were not studied on day 0.
         let studied = own.last_research_day.filter(|day| hidden || *day > 0);
         write.execute(params![group.id(), own.level, hidden, own.discovered_day, studied])?;
     }

@@ -1,4 +1,4 @@
-//! Issues of entries: days on which they were opened, changed as they are solved.
+//! Issues of entries, by opening day, updated when they are resolved.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,20 +12,20 @@ use novamind_world::events::Facts;
 
 /// Collects issues until the next commit.
 pub(super) struct IssueWriter {
-    /// What was committed.
+    /// Committed days.
     days: Arc<Vec<Arc<PackedDay>>>,
-    /// What the clock of ageing showed after each day.
+    /// Issue clock after each day.
     clock: Vec<u32>,
-    /// The first day whose clock is not written yet.
+    /// First day whose clock is not written yet.
     clock_from: usize,
-    /// First issue of each day on which some were opened, and the day.
+    /// First issue and day of each day with new issues.
     firsts: Vec<(u32, u32)>,
-    /// Runs of days that were touched.
+    /// Runs of changed days.
     touched: BTreeMap<u32, Vec<IssueRun>>,
 }
 
 impl IssueWriter {
-    /// A writer that continues what a store holds.
+    /// Returns a writer that continues a store.
     pub fn continuing(store: &BlockStore) -> IssueWriter {
         let clock = store.issue_clock.to_vec();
         let first = |day: &Arc<PackedDay>| Some((day.open::<IssueRun>(0)?.first, day.day));
@@ -38,7 +38,7 @@ impl IssueWriter {
         }
     }
 
-    /// Adds a day. Solutions come before the clock ticks, new issues after it.
+    /// Adds a day. Resolutions precede the tick of the clock, new issues follow it.
     pub fn write(&mut self, facts: &Facts) {
         let worked_on =
             facts.issues_aged || !facts.issues_opened.is_empty() || !facts.issues_resolved.is_empty();
@@ -69,7 +69,7 @@ impl IssueWriter {
         }
     }
 
-    /// Writes the days that were touched, and the clock.
+    /// Writes the changed days and the clock.
     pub fn flush(&self, transaction: &Transaction<'_>) -> rusqlite::Result<()> {
         let mut write = transaction.prepare_cached("INSERT OR REPLACE INTO issue_blocks VALUES (?1, ?2)")?;
         for (day, runs) in &self.touched {
@@ -82,7 +82,7 @@ impl IssueWriter {
         Ok(())
     }
 
-    /// Everything written is part of the store now.
+    /// Adds the written days to the store.
     pub fn publish(&mut self, store: &mut BlockStore) {
         if self.clock_from < self.clock.len() {
             self.clock_from = self.clock.len();

@@ -1,4 +1,4 @@
-//! Movements of cash of entries: costs of leads, payments, then everything else. The numbers of a day follow this order.
+//! Ledger entries: lead costs, payments, then others. The numbers of a day follow this order.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use novamind_world::params::Params;
 /// Collects the ledger until the next commit.
 pub(super) struct LedgerWriter {
     params: Arc<Params>,
-    /// What was committed.
+    /// Committed days.
     days: Arc<Vec<Arc<LedgerDay>>>,
     touched: BTreeMap<u32, LedgerDay>,
     /// Number of the next row.
@@ -21,24 +21,24 @@ pub(super) struct LedgerWriter {
 }
 
 impl LedgerWriter {
-    /// A writer that continues a ledger.
+    /// Returns a writer that continues a ledger.
     pub fn continuing(params: Arc<Params>, days: Arc<Vec<Arc<LedgerDay>>>) -> LedgerWriter {
         let next = days.last().map_or(1, |day| day.first() + day.len());
         LedgerWriter { params, days, touched: BTreeMap::new(), next }
     }
 
-    /// Makes rows with other parameters from here on.
+    /// Uses other parameters from now on.
     pub fn go_on_with(&mut self, params: Arc<Params>) {
         self.params = params;
     }
 
-    /// Adds the movements of a day or a call.
+    /// Adds the ledger entries of a day or a call.
     pub fn write(&mut self, facts: &Facts) {
         if facts.arrivals.is_empty() && facts.payments.is_empty() && facts.ledger.is_empty() {
             return;
         }
         let (next, lead_cost) = (self.next, -self.params.leads.lead_acquisition_cost);
-        // Only the newest day can have been begun before.
+        // Only the newest day can already exist.
         let begun = self.days.last().filter(|last| last.day() == facts.day);
         let anew =
             || begun.map_or_else(|| LedgerDay::of(facts.day, next, lead_cost), |last| LedgerDay::clone(last));
@@ -55,7 +55,7 @@ impl LedgerWriter {
         self.next += day.len() - before;
     }
 
-    /// Writes the days that were touched.
+    /// Writes the changed days.
     pub fn flush(&self, transaction: &Transaction<'_>) -> rusqlite::Result<()> {
         let mut write = transaction.prepare_cached("INSERT OR REPLACE INTO ledger_blocks VALUES (?1, ?2)")?;
         for day in self.touched.values() {
@@ -64,7 +64,7 @@ impl LedgerWriter {
         Ok(())
     }
 
-    /// Everything written is part of the ledger now: it is returned if it changed.
+    /// Adds the written days to the ledger, and returns it if it changed.
     pub fn publish(&mut self) -> Option<Arc<Vec<Arc<LedgerDay>>>> {
         let touched = std::mem::take(&mut self.touched);
         let first = *touched.keys().next()?;

@@ -1,4 +1,4 @@
-//! Many rows of a table in few statements: starting one costs as much as writing a row.
+//! Inserting many rows with few statements, because starting a statement costs as much as writing a row.
 
 use rusqlite::Transaction;
 use rusqlite::types::{ToSqlOutput, ValueRef};
@@ -6,33 +6,29 @@ use rusqlite::types::{ToSqlOutput, ValueRef};
 /// A value of a row.
 pub(crate) type Value<'a> = ToSqlOutput<'a>;
 
-/// Rows in one statement.
 const TOGETHER: usize = 24;
 
-/// No value.
+/// NULL.
 pub(crate) const NOTHING: Value<'static> = ToSqlOutput::Borrowed(ValueRef::Null);
 
-/// A whole number.
 pub(crate) fn whole(number: impl Into<i64>) -> Value<'static> {
     ToSqlOutput::Borrowed(ValueRef::Integer(number.into()))
 }
 
-/// A number.
 pub(crate) fn real(number: f64) -> Value<'static> {
     ToSqlOutput::Borrowed(ValueRef::Real(number))
 }
 
-/// A text.
 pub(crate) fn text(text: &str) -> Value<'_> {
     ToSqlOutput::Borrowed(ValueRef::Text(text.as_bytes()))
 }
 
-/// A value that may be missing.
+/// Returns a value, or NULL for `None`.
 pub(super) fn or_nothing<'a, T>(value: Option<T>, write: impl FnOnce(T) -> Value<'a>) -> Value<'a> {
     value.map_or(NOTHING, write)
 }
 
-/// Inserts rows, in their order; `head` is the statement up to and with `VALUES`.
+/// Inserts rows in order; `head` is the statement up to and including `VALUES`.
 pub(crate) fn insert_rows<'a, const COLUMNS: usize>(
     transaction: &Transaction<'_>,
     head: &str,

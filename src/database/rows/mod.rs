@@ -1,4 +1,4 @@
-//! From facts to rows: what the writer thread does with a day.
+//! Conversion of facts to rows in the writer thread.
 
 mod create;
 mod direct;
@@ -32,7 +32,7 @@ use novamind_world::identifiers::Plan;
 use novamind_world::params::Params;
 use words::WordWriter;
 
-/// What is to be written: the facts of a day or a call, and the words that belong to them.
+/// The facts of a day or a call with their texts.
 #[derive(Debug, Clone, Default)]
 pub struct Entry {
     /// Facts.
@@ -41,36 +41,36 @@ pub struct Entry {
     pub notices: Vec<String>,
     /// Description of each published reading of the facts.
     pub readings: Vec<String>,
-    /// Text of each turn of the facts; empty where nothing is said in words.
+    /// Text of each turn of the facts; empty for turns without text.
     pub turns: Vec<String>,
-    /// Text of each post of others among the facts.
+    /// Text of each post of other authors among the facts.
     pub posts: Vec<String>,
-    /// Posts of others that are shown in other words from here on: number and text.
+    /// Number and new text of reworded posts.
     pub rewordings: Vec<(u32, String)>,
-    /// Address of each company that came or wrote, by customer number.
+    /// Address of each enterprise that is new or sent a message, by customer number.
     pub addresses: BTreeMap<u32, String>,
-    /// The settings family that was set, as its row shows it.
+    /// Row of the changed settings.
     pub settings: Option<serde_json::Value>,
-    /// Forecasts that were filed.
+    /// Submitted forecasts.
     pub forecasts: Vec<ForecastRow>,
-    /// Parameters with which rows are made from here on, where they change.
+    /// New parameters for later rows, if they change.
     pub params: Option<Arc<Params>>,
 }
 
 /// A row of `predictions`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ForecastRow {
-    /// Day it was filed.
+    /// Day of submission.
     pub submit_day: u32,
     /// Days ahead.
     pub horizon_days: u32,
-    /// Point, lower, upper: dollars.
+    /// Most likely value, dollars.
     pub point: f64,
-    /// Lower end of the interval.
+    /// Lower end of the interval, dollars.
     pub lower: f64,
-    /// Upper end of the interval.
+    /// Upper end of the interval, dollars.
     pub upper: f64,
-    /// Seconds since 1970.
+    /// Moment of submission, seconds since 1970.
     pub submitted_at: f64,
 }
 
@@ -89,15 +89,15 @@ struct SubscriptionRow {
     billed_once: bool,
 }
 
-/// What a deal changes of a subscription besides its terms.
+/// Changes of a subscription by a deal, besides its terms.
 #[derive(Debug, Clone, Copy)]
 struct DealRow {
-    /// Day on which a lead became a subscriber by it.
+    /// Day on which the lead became a subscriber.
     activated: Option<u32>,
     contract_end_day: u32,
 }
 
-/// Collects what changes until the next commit, so that several changes of a row become one write.
+/// Collects changes until the next commit, so that several changes of a row need one write.
 pub(super) struct RowWriter {
     params: Arc<Params>,
     store: SharedStore,
@@ -115,7 +115,7 @@ pub(super) struct RowWriter {
 }
 
 impl RowWriter {
-    /// A writer for a database that has its tables, and whose days are in the store.
+    /// Returns a writer for a database with tables, whose days are in the store.
     pub fn new(params: Arc<Params>, store: SharedStore) -> RowWriter {
         let kept = store.read().unwrap_or_else(|poisoned| poisoned.into_inner()).clone();
         RowWriter {
@@ -135,7 +135,7 @@ impl RowWriter {
         }
     }
 
-    /// Writes an entry; what may still change before the commit is kept back.
+    /// Writes an entry. Rows that can change before the commit are held back.
     pub fn write(&mut self, transaction: &Transaction<'_>, entry: &Entry) -> rusqlite::Result<()> {
         if let Some(params) = &entry.params {
             self.params = params.clone();
@@ -218,7 +218,7 @@ impl RowWriter {
         }
     }
 
-    /// Deals; the terms they agree on come as changed terms.
+    /// Collects deals. Their terms arrive as changed terms.
     fn deals(&mut self, transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
         threads::contract_starts(transaction, facts)?;
         for deal in &facts.deals {
@@ -290,7 +290,7 @@ impl RowWriter {
         factors.iter().position(|factor| arrival.c_max < factor * mean).unwrap_or(factors.len()) as u8
     }
 
-    /// Writes what was kept back. The store follows with [`RowWriter::publish`], once the commit succeeded.
+    /// Writes the held-back rows. After the commit, [`RowWriter::publish`] updates the store.
     pub fn flush(&mut self, transaction: &Transaction<'_>) -> rusqlite::Result<()> {
         self.flush_subscriptions(transaction)?;
         self.notices.flush(transaction)?;
@@ -347,7 +347,7 @@ impl RowWriter {
         Ok(())
     }
 
-    /// Puts the new days into the store and takes the old ones out.
+    /// Adds new days to the store and removes old ones.
     pub fn publish(&mut self) {
         let mut store = self.store.write().unwrap_or_else(|poisoned| poisoned.into_inner());
         if !self.new_usage.is_empty() {
@@ -389,7 +389,7 @@ fn opened_row(opened: &SubscriptionOpened, day: u32) -> SubscriptionRow {
     }
 }
 
-/// One byte per axis, in the order of the `words` table; companies pick fewer axes of persons and more of their own.
+/// Packs one byte per axis, in the order of the `words` table. Enterprises and individuals use different axes.
 fn packed_persona(company: bool, picks: PersonaPicks) -> i64 {
     let [a, b, c, d, e, f, g] = picks.0;
     // industry, role, experience, work style, technical skill, size, decision, concern

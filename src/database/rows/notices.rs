@@ -1,4 +1,4 @@
-//! Notices of entries: days of the inbox, and losses that repeat from now on.
+//! Notices of entries: days of the inbox, and repeated losses.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,11 +12,11 @@ use novamind_world::events::{Facts, LossCause};
 
 /// Collects the inbox until the next commit.
 pub(super) struct NoticeWriter {
-    /// What was committed.
+    /// Committed inbox.
     inbox: Inbox,
-    /// Companies whose loss is reported every day, by customer number.
+    /// Whether the loss of a customer is reported every day, by customer number.
     repeated: Vec<bool>,
-    /// Days that were touched.
+    /// Changed days.
     days: BTreeMap<u32, NoticeDay>,
     /// Number of the next notice.
     next: u64,
@@ -24,7 +24,7 @@ pub(super) struct NoticeWriter {
 }
 
 impl NoticeWriter {
-    /// A writer that continues an inbox.
+    /// Returns a writer that continues an inbox.
     pub fn continuing(inbox: Inbox) -> NoticeWriter {
         let next = inbox.days.last().map_or(1, |day| day.first + day.len());
         let mut writer =
@@ -59,7 +59,7 @@ impl NoticeWriter {
         self.next += added;
     }
 
-    /// How many losses a day repeats, if it repeats all there are, as days do; the new ones are remembered.
+    /// Returns the number of losses that a day repeats, if it repeats all of them, and stores the new ones.
     fn repeats(&mut self, facts: &Facts) -> Option<u32> {
         let mut today = 0;
         for loss in facts.notices.iter().filter_map(RepeatedLoss::of) {
@@ -72,7 +72,7 @@ impl NoticeWriter {
         (today == known).then_some(today as u32)
     }
 
-    /// Whether no loss of a customer was repeated before.
+    /// Returns whether a customer has no repeated loss yet, and marks it.
     fn is_new(&mut self, customer: u32) -> bool {
         let at = customer as usize;
         if self.repeated.len() <= at {
@@ -81,14 +81,14 @@ impl NoticeWriter {
         !std::mem::replace(&mut self.repeated[at], true)
     }
 
-    /// The day with this number: only the newest one can have been begun before.
+    /// Returns the day with this number. Only the newest one can already exist.
     fn day(&mut self, day: u32) -> &mut NoticeDay {
         let begun = self.inbox.days.last().filter(|last| last.day == day);
         let anew = || begun.map_or_else(|| NoticeDay::of(day, self.next), |last| NoticeDay::clone(last));
         self.days.entry(day).or_insert_with(anew)
     }
 
-    /// Writes the days that were touched, and the new losses.
+    /// Writes the changed days and the new losses.
     pub fn flush(&self, transaction: &Transaction<'_>) -> rusqlite::Result<()> {
         let mut write = transaction.prepare_cached("INSERT OR REPLACE INTO notice_blocks VALUES (?1, ?2)")?;
         for day in self.days.values().filter(|day| day.len() > 0) {
@@ -103,7 +103,7 @@ impl NoticeWriter {
         Ok(())
     }
 
-    /// Everything written is part of the inbox now: it is returned if it changed.
+    /// Adds the written days to the inbox, and returns it if it changed.
     pub fn publish(&mut self) -> Option<Inbox> {
         if self.days.is_empty() && self.new_losses.is_empty() {
             return None;

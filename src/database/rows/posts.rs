@@ -1,10 +1,10 @@
-//! Rows of what is written in public.
+//! Rows of public posts.
 
 use rusqlite::{Transaction, params};
 
 use novamind_world::events::{Facts, Matter};
 
-/// Posts of others; `words` holds their texts.
+/// Writes posts of other authors with their texts.
 pub(super) fn posts(transaction: &Transaction<'_>, facts: &Facts, words: &[String]) -> rusqlite::Result<()> {
     let mut insert =
         transaction.prepare_cached("INSERT OR REPLACE INTO social_media_posts VALUES (?1, ?2, ?3, ?4)")?;
@@ -18,7 +18,7 @@ pub(super) fn posts(transaction: &Transaction<'_>, facts: &Facts, words: &[Strin
     Ok(())
 }
 
-/// Posts of others in other words.
+/// Writes new texts of posts of other authors.
 pub(super) fn rewordings(
     transaction: &Transaction<'_>,
     rewordings: &[(u32, String)],
@@ -34,7 +34,7 @@ pub(super) fn rewordings(
     Ok(())
 }
 
-/// Posts of the player, when they are made and when they were read.
+/// Writes posts of the player, and later their views and comments.
 pub(super) fn own_posts(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
     let mut insert = transaction.prepare_cached(
         "INSERT OR REPLACE INTO agent_social_media_posts (agent_post_id, day, content, reply_to_post_id) \

@@ -1,4 +1,4 @@
-//! Rows of negotiations with companies.
+//! Rows of negotiations with enterprises.
 
 use rusqlite::{Transaction, params};
 
@@ -6,7 +6,7 @@ use super::Entry;
 use novamind_base::notation::point_number;
 use novamind_world::events::{Facts, Offering, Sender, ThreadTurn, TurnContent};
 
-/// Writes the turns of an entry, with their words.
+/// Writes the turns of an entry with their texts.
 pub(super) fn turns(transaction: &Transaction<'_>, entry: &Entry) -> rusqlite::Result<()> {
     let mut insert = transaction.prepare_cached(
         "INSERT INTO enterprise_turns VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13)",
@@ -33,7 +33,7 @@ pub(super) fn turns(transaction: &Transaction<'_>, entry: &Entry) -> rusqlite::R
     Ok(())
 }
 
-/// Writes the day of each deal to its company.
+/// Writes the day of each deal to the row of its customer.
 pub(super) fn contract_starts(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
     let mut update = transaction
         .prepare_cached("UPDATE customer_rows SET contract_start_day = ?2 WHERE customer_id = ?1")?;
@@ -43,7 +43,7 @@ pub(super) fn contract_starts(transaction: &Transaction<'_>, facts: &Facts) -> r
     Ok(())
 }
 
-/// Why a thread ends with a turn; empty while it goes on. A thread that dies does not show it.
+/// Returns why a thread ends with a turn; empty while it continues. Unanswered threads have no reason.
 fn close_reason(turn: &ThreadTurn) -> &'static str {
     match turn.content {
         TurnContent::Acceptance(_) | TurnContent::Closing(_) => "accepted",
@@ -52,7 +52,7 @@ fn close_reason(turn: &ThreadTurn) -> &'static str {
     }
 }
 
-/// The offer of a turn as JSON, spaced as the released simulator writes it: people search this text.
+/// Returns the offer of a turn as JSON with the spacing of the released simulator, because users search this text.
 fn offer_json(content: &TurnContent) -> String {
     match content {
         TurnContent::Offer(offerings) => {

@@ -1,5 +1,5 @@
-//! Words of customer profiles: those of a group come in when it is found or has its first customer, so that the file holds
-//! nothing of groups that nobody has found.
+//! Words of customer profiles. Those of a group are written when it is discovered or has its first customer, so that the file
+//! reveals nothing about undiscovered groups.
 
 use rusqlite::{Transaction, params};
 
@@ -7,15 +7,15 @@ use novamind_world::events::Facts;
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 
-/// Writes the words of groups as they become known.
+/// Writes the words of groups when they become known.
 #[derive(Default)]
 pub(super) struct WordWriter {
-    /// Groups whose words are there for certain.
+    /// Groups whose words are certainly written.
     written: [bool; Group::COUNT],
 }
 
 impl WordWriter {
-    /// Writes the words of the groups that the facts make known.
+    /// Writes the words of the groups that become known with the facts.
     pub(super) fn write(
         &mut self,
         transaction: &Transaction<'_>,
@@ -34,7 +34,7 @@ impl WordWriter {
 }
 
 fn write_group(transaction: &Transaction<'_>, group: Group, params: &Params) -> rusqlite::Result<()> {
-    // A database that is gone on with has some of them.
+    // A continued database already has some of them.
     let mut insert = transaction.prepare_cached("INSERT OR IGNORE INTO words VALUES (?1, ?2, ?3, ?4)")?;
     for (axis, words) in axes(group, params) {
         for (n, word) in (0u32..).zip(&words) {
@@ -48,7 +48,6 @@ fn write_group(transaction: &Transaction<'_>, group: Group, params: &Params) -> 
     Ok(())
 }
 
-/// Word lists of a group by axis.
 fn axes(group: Group, params: &Params) -> Vec<(&'static str, Vec<String>)> {
     let (own, personas) = (&params.personas.group[group.index()], &params.personas);
     let floor = params.group(group).q_min_mean;

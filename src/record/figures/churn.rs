@@ -1,13 +1,13 @@
-//! How many of the subscribers leave.
+//! Churn.
 
 use super::week::WeekFigures;
 
-/// Churn of some days: their cancellations, as a share of the subscribers before the first of them. None without subscribers.
+/// Returns cancellations of a period as a share of the subscribers before it, or `None` without subscribers.
 pub fn churn(cancellations: f64, subscribers_before: f64) -> Option<f64> {
     (subscribers_before > 0.0).then(|| cancellations / subscribers_before)
 }
 
-/// Cancellations of individuals in the last week as a share of those who subscribed before it; none without any.
+/// Returns the churn of individuals in the last week, or `None` without subscribers before it.
 pub fn churn_of_last_week(weeks: &[WeekFigures]) -> Option<f64> {
     let [.., before, last] = weeks else { return None };
     churn(last.cancellations.into(), before.individual_subscribers.into())

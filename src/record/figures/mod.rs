@@ -1,4 +1,4 @@
-//! Figures of a week: those that its line carries, and those of which lessons and explanations speak.
+//! Figures of a week: those in its trajectory line, and those that lessons and explanations use.
 
 mod booked;
 mod churn;

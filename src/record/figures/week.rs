@@ -1,4 +1,4 @@
-//! Figures of a week that a player sees.
+//! Figures of a week that the player sees.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
@@ -10,48 +10,48 @@ use novamind_world::events::{
 };
 use novamind_world::params::Params;
 
-/// Figures of a week, or of the part of it that ran.
+/// Figures of a week, or of its simulated part.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct WeekFigures {
     /// Last day.
     pub day: u32,
-    /// Days that ran.
+    /// Simulated days.
     pub days_run: u32,
     /// Cash at the end, dollars.
     pub cash: f64,
-    /// Its change over the days that ran, dollars.
+    /// Change of cash over the simulated days, dollars.
     pub cash_change: f64,
     /// Active subscriptions of individuals.
     pub individual_subscribers: u32,
-    /// Seats of active companies.
+    /// Seats of active enterprises.
     pub enterprise_seats: u32,
     /// Active subscribers with an open issue.
     pub open_issues: u32,
-    /// Issues that were opened.
+    /// New issues.
     pub issues_opened: u32,
-    /// Units used.
+    /// Usage in units.
     pub usage: u64,
-    /// Leads of individuals.
+    /// Individual leads.
     pub new_individual_leads: u32,
-    /// Leads of companies that opened a thread.
+    /// Enterprise leads that opened a thread.
     pub new_enterprise_leads: u32,
     /// Individuals who signed up.
     pub new_individual_subscribers: u32,
-    /// Seats of companies that signed.
+    /// Seats of enterprises with a new contract.
     pub new_enterprise_seats: u32,
     /// Cancellations of individuals.
     pub cancellations: u32,
-    /// Switches to dearer plans.
+    /// Switches to more expensive plans.
     pub upgrades: u32,
     /// Switches to cheaper plans.
     pub downgrades: u32,
-    /// Companies that left.
+    /// Enterprises that cancelled.
     pub companies_lost: u32,
-    /// Their seats.
+    /// Seats of these enterprises.
     pub seats_lost: u32,
-    /// Units used on the busiest day.
+    /// Usage of the busiest day, in units.
     pub busiest_day: u64,
-    /// Largest overload.
+    /// Highest overload.
     pub overload_peak: f64,
     /// Minutes of outages.
     pub downtime_minutes: u32,
@@ -61,7 +61,7 @@ pub struct WeekFigures {
     pub p95_ms_peak: f64,
     /// Highest error rate.
     pub error_rate_peak: f64,
-    /// What was booked by category since the end of the week before.
+    /// Ledger totals by category since the end of the previous week.
     pub booked: Booked,
     /// Payments of subscribers, dollars.
     pub payments: f64,
@@ -69,20 +69,20 @@ pub struct WeekFigures {
     pub costs: f64,
     /// Monthly recurring revenue at the end, dollars.
     pub recurring_revenue: f64,
-    /// Threads that were opened, and the seats behind them.
+    /// New threads.
     pub threads_opened: u32,
-    /// Seats of the companies that opened threads.
+    /// Seats of the enterprises with new threads.
     pub thread_seats: u32,
-    /// Messages of companies in their threads.
+    /// Messages of enterprises in their threads.
     #[serde(default)]
     pub replies: u32,
-    /// R&D projects and studies of groups that were finished.
+    /// Completed R&D projects and market studies.
     #[serde(default)]
     pub research_finished: u32,
 }
 
 impl WeekFigures {
-    /// Share of the week's individual leads who signed up, from 0 to 1; not a number without leads.
+    /// Returns individual sign-ups as a share of individual leads, 0 to 1; NaN without leads.
     pub fn conversion(&self) -> f64 {
         match self.new_individual_leads {
             0 => f64::NAN,
@@ -90,7 +90,7 @@ impl WeekFigures {
         }
     }
 
-    /// Counts a day that was simulated: its figures, what happened on it, and the money that calls moved before it.
+    /// Adds a simulated day: its figures, its facts, and the ledger entries of calls before it.
     pub fn count(&mut self, figures: &DayFigures, facts: &Facts, called: &[LedgerEntry], params: &Params) {
         self.add(figures);
         let leads = f64::from(figures.new_leads) * params.leads.lead_acquisition_cost;
@@ -119,7 +119,7 @@ impl WeekFigures {
         }
     }
 
-    /// Adds a day. Sums add up, peaks rise, stocks are those of the last day.
+    /// Adds the figures of a day: sums are added, peaks are maxima, stocks are those of the last day.
     pub fn add(&mut self, day: &DayFigures) {
         self.day = day.day;
         self.days_run += 1;
@@ -145,7 +145,7 @@ impl WeekFigures {
         self.error_rate_peak = self.error_rate_peak.max(day.error_rate);
     }
 
-    /// The figures that a `week` line and programs carry, by their names there.
+    /// Returns the figures of `week` lines and JSON output by their keys.
     pub fn as_json(&self) -> Map<String, Value> {
         let figures = json!({
             "cash": json_number(self.cash),

@@ -1,27 +1,27 @@
-//! Figures of a week whose change can be explained.
+//! Figures of a week that explanations and lessons can name.
 
 use super::simulated_week::{GroupOfWeek, SimulatedWeek};
 use super::week::WeekFigures;
 use novamind_world::events::Category;
 
-/// What a figure is counted in.
+/// Unit of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FigureUnit {
     /// Dollars.
     Dollars,
-    /// A number of something.
+    /// A count.
     Count,
-    /// A share, from 0 to 1 and above.
+    /// A share; 1 is 100 %.
     Share,
-    /// A share of which hundredths of a percent matter.
+    /// A share that is shown with hundredths of a percent.
     FineShare,
-    /// A level that is no share, and of which thousandths matter.
+    /// A level that is shown with thousandths.
     Level,
 }
 
-/// How a figure is read of the company; none where it is one of groups only. Not a number where it has no value.
+/// Reads the figure of the company; `None` for a figure of groups only. NaN if it has no value.
 pub type OfCompany = Option<fn(&SimulatedWeek) -> f64>;
-/// How it is read of a group; none where it is one of the company only.
+/// Reads the figure of a group; `None` for a figure of the company only.
 pub type OfGroup = Option<fn(&GroupOfWeek) -> f64>;
 
 macro_rules! figures {
@@ -32,25 +32,25 @@ macro_rules! figures {
         pub enum WeekFigure { $($figure),* }
 
         impl WeekFigure {
-            /// All of them: those of the Overview in its order, then those of the ledger.
+            /// All figures: those of the Overview in its order, then those of the ledger.
             pub const ALL: &'static [WeekFigure] = &[$(WeekFigure::$figure),*];
 
-            /// Name, as screens write it.
+            /// Returns the name on screens.
             pub fn name(self) -> &'static str {
                 match self { $(WeekFigure::$figure => $name),* }
             }
 
-            /// What it is counted in.
+            /// Returns the unit.
             pub fn unit(self) -> FigureUnit {
                 match self { $(WeekFigure::$figure => FigureUnit::$unit),* }
             }
 
-            /// How it is read of the company.
+            /// Returns the reader for the company.
             pub fn of_company(self) -> OfCompany {
                 match self { $(WeekFigure::$figure => $company),* }
             }
 
-            /// How it is read of a group.
+            /// Returns the reader for a group.
             pub fn of_group(self) -> OfGroup {
                 match self { $(WeekFigure::$figure => $group),* }
             }
@@ -58,7 +58,7 @@ macro_rules! figures {
     };
 }
 
-// Costs of the ledger are told as what they are, not as negative dollars.
+// Costs are positive, unlike in the ledger.
 figures! {
     CashChange = "cash change", Dollars, Some(|week| week.figures.cash_change), None;
     RecurringRevenue = "recurring revenue", Dollars, Some(|week| week.figures.recurring_revenue), None;
@@ -106,7 +106,7 @@ figures! {
 }
 
 impl WeekFigure {
-    /// The figure that screens call so; unit or peak may follow its name.
+    /// Returns the figure with a name on screens, which a unit or `peak` may follow.
     pub fn named(name: &str) -> Option<WeekFigure> {
         let own = |figure: &WeekFigure| name.split(',').next().is_some_and(|name| name == figure.name());
         let longer = match name {
@@ -117,7 +117,7 @@ impl WeekFigure {
         WeekFigure::ALL.iter().copied().find(own).or(longer)
     }
 
-    /// The figure that movements of a category of the ledger add up to; none of the money that the company began with.
+    /// Returns the figure that sums a ledger category; `None` for the initial funding.
     pub fn of_category(category: Category) -> Option<WeekFigure> {
         Some(match category {
             Category::SubscriptionPayment => WeekFigure::Payments,
@@ -135,18 +135,18 @@ impl WeekFigure {
         })
     }
 
-    /// Its name in commands and data: `new_subscribers`.
+    /// Returns the name in commands and data, for example `new_subscribers`.
     pub fn id(self) -> String {
         self.name().replace(' ', "_")
     }
 
-    /// Whether no player may see it whose run goes on, outside of debug runs.
+    /// Returns whether the figure is hidden while a run is unfinished, outside of debug runs.
     pub fn is_hidden(self) -> bool {
         matches!(self, WeekFigure::Satisfaction | WeekFigure::Reputation)
     }
 
-    /// Its value in a week whose groups are not told; none for a figure that is made of groups or hidden. Not a number where
-    /// it has no value.
+    /// Returns the value from the visible figures of a week, or `None` if the figure needs group data or is hidden. NaN if it
+    /// has no value.
     pub fn of_week(self, figures: &WeekFigures) -> Option<f64> {
         use WeekFigure::{Churn, Leads, Reputation, Satisfaction};
         if matches!(self, Leads | Churn | Satisfaction | Reputation) {
@@ -155,12 +155,12 @@ impl WeekFigure {
         Some(self.of_company()?(&SimulatedWeek::without_groups(*figures)))
     }
 
-    /// Whether it is one of the company.
+    /// Returns whether the company has this figure.
     pub fn is_of_company(self) -> bool {
         self.of_company().is_some()
     }
 
-    /// Whether it is one of each group.
+    /// Returns whether each group has this figure.
     pub fn is_of_group(self) -> bool {
         self.of_group().is_some()
     }

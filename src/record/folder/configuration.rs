@@ -1,4 +1,4 @@
-//! Where runs and configuration live, and the scenarios.
+//! Folders of runs and configuration, and the scenarios.
 
 use crate::consent::ConsentText;
 use std::path::{Path, PathBuf};
@@ -10,23 +10,23 @@ use crate::error::RunError;
 use novamind_voice::model::settings::ModelSettings;
 use novamind_world::params::{ParameterError, ParameterSource, Params, line_of_key, shipped_sources};
 
-/// Folders of this person on this machine.
+/// Configuration of the user.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Configuration {
-    /// Files here go before the shipped ones; none: only the shipped ones count.
+    /// Folder whose files take precedence over the bundled ones; `None` to use bundled files only.
     pub folder: Option<PathBuf>,
-    /// The language model that lends its voice to the runs that are played; none unless it was named.
+    /// Language model for the texts of new runs, if one was configured.
     pub voice: Option<ModelSettings>,
 }
 
-/// A named set of overrides.
+/// A named set of parameter overrides.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
     /// Name of its file.
     pub name: String,
     /// Short title.
     pub title: String,
-    /// What is different.
+    /// Differences from the default scenario.
     pub description: String,
     /// Last day, if it sets one.
     pub days: Option<u32>,
@@ -34,9 +34,9 @@ pub struct Scenario {
     pub cash: Option<f64>,
     /// Overrides of parameters.
     pub world: Table,
-    /// File it was read from.
+    /// Source file.
     source: ParameterSource,
-    /// Whether it came with the program.
+    /// Whether it is bundled with the program.
     pub shipped: bool,
 }
 
@@ -51,11 +51,11 @@ struct ScenarioFile {
     world: Table,
 }
 
-/// Name of the standard scenario.
+/// Name of the default scenario.
 pub const DEFAULT_SCENARIO: &str = "default";
 
 impl Configuration {
-    /// The configuration of this person: `NOVAMIND_CONFIG`, or the platform's folder.
+    /// Returns the configuration in `NOVAMIND_CONFIG`, or in the platform's configuration folder.
     pub fn of_user() -> Configuration {
         let from_environment = std::env::var_os("NOVAMIND_CONFIG").map(PathBuf::from);
         let platform =
@@ -63,12 +63,12 @@ impl Configuration {
         Configuration { folder: from_environment.or_else(platform), voice: None }
     }
 
-    /// Only what came with the program.
+    /// Returns a configuration with bundled files only.
     pub fn shipped() -> Configuration {
         Configuration { folder: None, voice: None }
     }
 
-    /// Folder of runs: `NOVAMIND_RUNS`, or the platform's data folder.
+    /// Returns the folder of runs: `NOVAMIND_RUNS`, or a folder in the platform's data folder.
     pub fn runs_folder() -> Option<PathBuf> {
         let from_environment = std::env::var_os("NOVAMIND_RUNS").map(PathBuf::from);
         let platform =
@@ -76,10 +76,10 @@ impl Configuration {
         from_environment.or_else(platform)
     }
 
-    /// A file of this person's configuration, if it exists.
+    /// Reads a file of the configuration folder. Returns `None` if it does not exist.
     ///
     /// # Errors
-    /// It exists and cannot be read.
+    /// The file exists and cannot be read.
     pub fn file(&self, relative: impl AsRef<Path>) -> Result<Option<ParameterSource>, RunError> {
         let Some(folder) = &self.folder else { return Ok(None) };
         let path = folder.join(relative);
@@ -90,12 +90,12 @@ impl Configuration {
         }
     }
 
-    /// Names of the settings in a folder of this person's configuration, sorted.
+    /// Returns the names of the TOML files in a folder of the configuration, without their ending, sorted.
     pub fn names(&self, folder: &str) -> Vec<String> {
         self.names_ending(folder, ".toml")
     }
 
-    /// Names of the files of a kind in a folder of this person's configuration, without their ending, sorted.
+    /// Returns the names of the files with an ending in a folder of the configuration, without the ending, sorted.
     pub fn names_ending(&self, folder: &str, ending: &str) -> Vec<String> {
         let Some(own) = &self.folder else { return Vec::new() };
         let entries = std::fs::read_dir(own.join(folder)).into_iter().flatten().flatten();
@@ -106,11 +106,11 @@ impl Configuration {
         names
     }
 
-    /// Names of all scenarios: the shipped ones, then this person's.
+    /// Returns the names of all scenarios: bundled ones, then those of the user.
     pub fn scenarios(&self) -> Vec<String> {
         let mut names: Vec<String> =
             novamind_assets::scenarios().into_iter().map(|(name, _)| name.to_owned()).collect();
-        // The standard scenario stands first.
+        // The default scenario comes first.
         names.sort_by_key(|name| name != DEFAULT_SCENARIO);
         let own = self.names("scenarios").into_iter().filter(|own| !names.contains(own));
         let own: Vec<String> = own.collect();
@@ -118,10 +118,10 @@ impl Configuration {
         names
     }
 
-    /// A scenario; this person's file goes before the shipped one.
+    /// Loads a scenario. A file of the user takes precedence over a bundled one.
     ///
     /// # Errors
-    /// There is none of this name, or its file is wrong.
+    /// The scenario does not exist, or its file is invalid.
     pub fn scenario(&self, name: &str) -> Result<Scenario, RunError> {
         if let Some(source) = self.file(format!("scenarios/{name}.toml"))? {
             return Ok(read_scenario(name, source, false)?);
@@ -135,20 +135,20 @@ impl Configuration {
         }
     }
 
-    /// Days and starting cash of a scenario; `own` as in [`Configuration::parameters`].
+    /// Returns days and starting cash of a scenario; `own` as in [`Configuration::parameters`].
     ///
     /// # Errors
-    /// The first wrong value, with its place.
+    /// The first invalid value, with its position.
     pub fn terms(&self, scenario: &Scenario, own: bool) -> Result<(u32, f64), RunError> {
         Ok(scenario.terms(&self.parameters(scenario, &[], own)?))
     }
 
-    /// The parameters of a scenario with single overrides on top, each `(table.key, value as TOML)`.
+    /// Loads the parameters of a scenario and applies single overrides, each `(table.key, value as TOML)`.
     ///
-    /// `own` allows this person's files in the folder `world`; baseline runs take the shipped parameters only.
+    /// `own` also applies the user's files in the folder `world`; baseline runs use bundled parameters only.
     ///
     /// # Errors
-    /// The first wrong value, with its place.
+    /// The first invalid value, with its position.
     pub fn parameters(
         &self,
         scenario: &Scenario,
@@ -170,18 +170,17 @@ impl Configuration {
 }
 
 impl Scenario {
-    /// The overrides as a source of their own.
     fn as_overrides(&self) -> ParameterSource {
         let text = toml::to_string(&self.world).expect("a table that was read can be written");
         ParameterSource { name: self.source.name.clone(), text }
     }
 
-    /// Days and starting cash, with the parameters it leads to.
+    /// Returns days and starting cash, with defaults from the parameters.
     pub fn terms(&self, params: &Params) -> (u32, f64) {
         (self.days.unwrap_or(params.run.total_days), self.cash.unwrap_or(params.initial.initial_cash))
     }
 
-    /// An error in the overrides, at its line in the scenario's file.
+    /// Adds the line in the scenario's file to an error.
     fn located(&self, error: ParameterError) -> ParameterError {
         if error.source != self.source.name {
             return error;
@@ -208,7 +207,7 @@ fn read_scenario(name: &str, source: ParameterSource, shipped: bool) -> Result<S
     })
 }
 
-/// A source that sets one parameter, from `table.key` and a TOML value; a bare word counts as text.
+/// Returns a source that sets one parameter from `table.key` and a TOML value; a bare word is read as text.
 fn single_override(key: &str, value: &str) -> Result<ParameterSource, ParameterError> {
     let name = format!("--set {key}={value}");
     let wrong = |problem: &str| ParameterError {
@@ -228,13 +227,12 @@ fn single_override(key: &str, value: &str) -> Result<ParameterSource, ParameterE
     Ok(ParameterSource { name, text })
 }
 
-/// Shortest run, in days.
 const FEWEST_DAYS: u32 = 7;
 
-/// Whether a run can have this many days.
+/// Checks the number of days of a run.
 ///
 /// # Errors
-/// It cannot: the days it can have.
+/// A message with the allowed range.
 pub fn check_days(days: u32) -> Result<(), String> {
     if (FEWEST_DAYS..=100_000).contains(&days) {
         return Ok(());
@@ -242,10 +240,10 @@ pub fn check_days(days: u32) -> Result<(), String> {
     Err(format!("a run has between {FEWEST_DAYS} and 100,000 days, not {days}"))
 }
 
-/// Whether a run can start with this much cash, in dollars.
+/// Checks the starting cash of a run, in dollars.
 ///
 /// # Errors
-/// It cannot: the cash it can have.
+/// A message with the allowed range.
 pub fn check_cash(cash: f64) -> Result<(), String> {
     if cash.is_finite() && cash > 0.0 && cash <= 1e15 {
         return Ok(());
@@ -253,11 +251,11 @@ pub fn check_cash(cash: f64) -> Result<(), String> {
     Err(format!("starting cash must be above 0 and at most 1e15 dollars, not {cash}"))
 }
 
-/// Name of the file with the text that participants agree to.
+/// Name of the file with the consent text.
 pub const CONSENT_FILE: &str = "consent.md";
 
 impl Configuration {
-    /// The text that participants of baseline sessions agree to, if the experimenter has one.
+    /// Returns the consent text of baseline sessions, if the configuration has one.
     ///
     /// # Errors
     /// The file exists and cannot be read.
@@ -266,12 +264,12 @@ impl Configuration {
         Ok(source.map(|source| ConsentText { file: source.name, text: source.text }))
     }
 
-    /// The file of a lesson of this person's own; none where there is no folder of configuration.
+    /// Returns the path of a user lesson, or `None` without a configuration folder.
     pub fn own_lesson(&self, name: &str) -> Option<PathBuf> {
         Some(self.folder.as_ref()?.join("lessons").join(format!("{name}.toml")))
     }
 
-    /// Names of all lessons: the shipped ones in the order of the course, then this person's.
+    /// Returns the names of all lessons: bundled ones in the order of the course, then those of the user.
     pub fn lessons(&self) -> Vec<String> {
         let mut names: Vec<String> =
             novamind_assets::lessons().into_iter().map(|(name, _)| name.to_owned()).collect();
@@ -290,7 +288,7 @@ mod tests {
         let configuration = Configuration::shipped();
         let mut digests: Vec<String> = Vec::new();
         for name in configuration.scenarios() {
-            let scenario = configuration.scenario(&name).expect("a shipped scenario");
+            let scenario = configuration.scenario(&name).expect("a bundled scenario");
             let params = configuration.parameters(&scenario, &[], false).expect("its parameters");
             assert!(!scenario.title.is_empty() && scenario.description.ends_with('.'));
             digests.push(params.digest());

@@ -1,4 +1,4 @@
-//! What a run is, as the first line of its trajectory says; `run.toml` repeats it, and is made anew where it does not.
+//! The manifest of a run, derived from the first line of its trajectory. `run.toml` repeats it and is rebuilt if it differs.
 
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader};
@@ -11,20 +11,20 @@ use crate::error::RunError;
 use crate::files::open_regular_file;
 use crate::trajectory::Line;
 
-/// What a run is, and what is wrong with its `run.toml`.
+/// The manifest of a run, and the defect of its `run.toml`.
 pub struct Derived {
     /// The manifest.
     pub manifest: Manifest,
-    /// Why `run.toml` has to be made anew; none where it says what the first line says.
+    /// Why `run.toml` has to be rebuilt; `None` if it agrees with the first line.
     pub problem: Option<String>,
 }
 
 impl Derived {
-    /// What the run in a folder is. Where the first line cannot be read `run.toml` has to do: whoever then opens the run is
-    /// told what is wrong with the line.
+    /// Reads the manifest of the run in a folder. If the first line cannot be read, `run.toml` is used: opening the run then
+    /// reports the defect of the line.
     ///
     /// # Errors
-    /// The run is of another format or other mechanics; neither file can be read.
+    /// The run has another format or other mechanics, or neither file can be read.
     pub fn of(folder: &Path) -> Result<Derived, RunError> {
         let path = folder.join("trajectory.jsonl");
         let own = Manifest::read(folder);
@@ -34,30 +34,30 @@ impl Derived {
         let told = Manifest::of_start(&path, Some(&line))?;
         let (manifest, problem) = match own {
             Err(error) => (told, Some(unusable(&error))),
-            // Two files of different runs: which of them is in the wrong place the folder tells, or nobody.
+            // The files belong to different runs, and the name of the folder does not confirm the trajectory.
             Ok(own) if own.id != told.id && !folder.ends_with(&told.id) => (own, None),
             Ok(own) => {
                 let manifest = with_what_no_line_says(told, &own);
-                let problem = difference_in_names(&own, &manifest)
-                    .map(|names| format!("run.toml said otherwise ({names})"));
+                let problem =
+                    difference_in_names(&own, &manifest).map(|names| format!("run.toml differed ({names})"));
                 (manifest, problem)
             }
         };
         Ok(Derived { manifest, problem })
     }
 
-    /// Makes `run.toml` anew if it has to be; returns what the person should know.
+    /// Rebuilds `run.toml` if necessary. Returns a message for the user if it was rebuilt.
     ///
     /// # Errors
     /// The folder cannot be written.
     pub fn restore(&self, folder: &Path) -> Result<Option<String>, RunError> {
         let Some(problem) = &self.problem else { return Ok(None) };
         self.manifest.write(folder)?;
-        Ok(Some(format!("{problem} and was made anew from the first line of the trajectory.")))
+        Ok(Some(format!("{problem} and was rebuilt from the first line of the trajectory.")))
     }
 }
 
-/// What a run is, as the first line of its trajectory says, whatever `run.toml` holds.
+/// Returns the manifest according to the first line of the trajectory.
 ///
 /// # Errors
 /// As [`manifest_text`].
@@ -65,24 +65,24 @@ pub fn manifest_of(folder: &Path) -> Result<Manifest, RunError> {
     Derived::of(folder).map(|derived| derived.manifest)
 }
 
-/// `run.toml` of a run as the first line of its trajectory says, whatever the file holds.
+/// Returns the text of `run.toml` according to the first line of the trajectory.
 ///
 /// # Errors
-/// The run is of another format or other mechanics; neither file can be read.
+/// The run has another format or other mechanics, or neither file can be read.
 pub fn manifest_text(folder: &Path) -> Result<String, RunError> {
     Derived::of(folder).map(|derived| derived.manifest.text())
 }
 
-/// The first line of a file, if it is whole.
+/// Reads the first line of a file, if it is complete.
 fn first_line(path: &Path) -> Option<Line> {
     let mut bytes = Vec::new();
     BufReader::new(open_regular_file(path).ok()?).read_until(b'\n', &mut bytes).ok()?;
     Line::first(bytes.strip_suffix(b"\n")?)
 }
 
-/// Takes from `run.toml` what the first line does not say.
+/// Adds the fields that only `run.toml` has.
 fn with_what_no_line_says(told: Manifest, own: &Manifest) -> Manifest {
-    // The first line is written a moment after the run was created; in format 1 it says nothing of earlier runs.
+    // The first line is written shortly after the run was created; in format 1 it does not list earlier runs.
     let earlier_runs = if told.format == 1 { own.earlier_runs } else { told.earlier_runs };
     Manifest { created: own.created.clone(), earlier_runs, ..told }
 }
@@ -101,10 +101,10 @@ fn unusable(error: &RunError) -> String {
     }
 }
 
-/// Checks that a manifest says what the first line of a trajectory says, in every field that both have.
+/// Checks that a manifest agrees with the first line of a trajectory in every field that both have.
 ///
 /// # Errors
-/// The line does not start a run, or a field differs: one of the two files belongs to another run.
+/// The line does not start a run, or a field differs, so one of the two files belongs to another run.
 pub fn check_start(path: &Path, first: Option<&Line>, manifest: &Manifest) -> Result<(), RunError> {
     let told = Manifest::of_start(path, first)?;
     let Some(names) = difference_in_names(manifest, &with_what_no_line_says(told, manifest)) else {
@@ -118,7 +118,7 @@ pub fn check_start(path: &Path, first: Option<&Line>, manifest: &Manifest) -> Re
     })
 }
 
-/// What `run.toml` says otherwise than the first line, a sentence each; `told` is what the line says.
+/// Returns one sentence for each field in which `run.toml` differs from the first line; `told` is the manifest of the line.
 pub fn departures_of_file(folder: &Path, told: &Manifest) -> Vec<String> {
     let own = match Manifest::read(folder) {
         Ok(own) => own,
@@ -132,13 +132,12 @@ pub fn departures_of_file(folder: &Path, told: &Manifest) -> Vec<String> {
     differ.map(words).collect()
 }
 
-/// Names of the fields in which two manifests differ, separated by commas; `None` if they are equal.
+/// Returns the names of the fields that differ, separated by commas, or `None` if the manifests are equal.
 fn difference_in_names(own: &Manifest, told: &Manifest) -> Option<String> {
     let names: Vec<String> = differences(own, told).into_iter().map(|(name, ..)| name).collect();
     (!names.is_empty()).then(|| names.join(", "))
 }
 
-/// The fields in which two manifests differ, with the values of both.
 fn differences(own: &Manifest, told: &Manifest) -> Vec<(String, Option<Value>, Option<Value>)> {
     if own == told {
         return Vec::new();

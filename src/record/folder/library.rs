@@ -1,14 +1,14 @@
-//! Named queries: those that came with the program, and a person's own in the folder `queries` of the configuration.
+//! Named queries: bundled ones, and those of the user in the folder `queries` of the configuration.
 //!
-//! The comments at the head of a file say what it is; each stands on a line of its own:
+//! Comments at the start of a file describe the query, one per line:
 //!
 //! ```text
 //! -- title: Retention by cohort
-//! -- what: One sentence on what one learns.
+//! -- what: One sentence that describes the result.
 //! -- chart: line x y [y …]
 //! ```
 //!
-//! The last line is optional: how the result is drawn, as `line` or as `bar`, from columns that are named.
+//! The last line is optional: it draws the named columns as a `line` or `bar` chart.
 
 use std::path::PathBuf;
 
@@ -17,10 +17,8 @@ use crate::error::RunError;
 use crate::files::{create_folder, write_whole};
 use novamind_base::nearest;
 
-/// Folder of a person's own queries.
 const FOLDER: &str = "queries";
 
-/// Longest name of a file.
 const LONGEST_NAME: usize = 60;
 
 macro_rules! shipped {
@@ -79,49 +77,49 @@ const SHIPPED: [(&str, &str); 47] = shipped![
     "notices",
 ];
 
-/// How a chart is drawn.
+/// Kind of a chart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ChartKind {
-    /// Lines over x.
+    /// Lines over the x column.
     Line,
-    /// A bar for each row.
+    /// One bar per row.
     Bar,
 }
 
-/// How a result is to be drawn: names of its columns.
+/// A chart of a result: its kind and the names of its columns.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ChartLine {
-    /// Lines or bars.
+    /// Kind.
     pub kind: ChartKind,
-    /// Column along which it is drawn.
+    /// Column of the x axis.
     pub x: String,
-    /// Columns that are drawn; at least one.
+    /// Drawn columns; at least one.
     pub ys: Vec<String>,
 }
 
-/// What the comments at the head of a statement say.
+/// The comments at the start of a statement.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Head {
-    /// Few words.
+    /// Title.
     pub title: Option<String>,
-    /// What one learns.
+    /// Description.
     pub what: Option<String>,
-    /// How the result is drawn.
+    /// Chart of the result.
     pub chart: Option<ChartLine>,
 }
 
 /// A named query.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NamedQuery {
-    /// Name of its file.
+    /// Name of its file, without the ending.
     pub name: String,
-    /// Few words.
+    /// Title.
     pub title: String,
-    /// What one learns; empty if nobody has said so.
+    /// Description; may be empty.
     pub what: String,
-    /// The statement with the comments at its head.
+    /// The statement with its leading comments.
     pub sql: String,
-    /// Whether it is the person's own.
+    /// Whether it belongs to the user.
     pub own: bool,
 }
 
@@ -130,7 +128,7 @@ pub struct NamedQuery {
 pub struct Library(Vec<NamedQuery>);
 
 impl Head {
-    /// Reads the comments before a statement.
+    /// Parses the leading comments of a statement.
     pub fn of(sql: &str) -> Head {
         let mut head = Head::default();
         for line in lines_of_head(sql) {
@@ -147,13 +145,12 @@ impl Head {
     }
 }
 
-/// A statement without the comments at its head.
+/// Returns a statement without its leading comments.
 pub fn body(sql: &str) -> &str {
     let head = lines_of_head(sql).count();
     sql.splitn(head + 1, '\n').nth(head).unwrap_or("")
 }
 
-/// Lines of comments before a statement.
 fn lines_of_head(sql: &str) -> impl Iterator<Item = &str> {
     sql.lines().map(str::trim).take_while(|line| line.is_empty() || line.starts_with("--"))
 }
@@ -183,20 +180,20 @@ impl NamedQuery {
         }
     }
 
-    /// The statement without the comments at its head.
+    /// Returns the statement without its leading comments.
     pub fn body(&self) -> &str {
         body(&self.sql)
     }
 }
 
 impl Library {
-    /// What came with the program.
+    /// Returns the bundled queries.
     pub fn shipped() -> Library {
         Library(SHIPPED.iter().map(|(name, text)| NamedQuery::read(name, text, false)).collect())
     }
 
-    /// A person's own queries, then those that came with the program; of two with one name, the person's counts. A
-    /// file that cannot be read stands in the list and says why.
+    /// Loads the user's queries, then the bundled ones; the user's query replaces a bundled one with the same name. A file that
+    /// cannot be read is listed with the error as its description.
     pub fn of(configuration: &Configuration) -> Library {
         let own = |name: String| match configuration.file(format!("{FOLDER}/{name}.sql")) {
             Ok(source) => source.map(|source| NamedQuery::read(&name, &source.text, true)),
@@ -212,34 +209,35 @@ impl Library {
         Library(all)
     }
 
-    /// The queries in their order.
+    /// Returns the queries in order.
     pub fn queries(&self) -> &[NamedQuery] {
         &self.0
     }
 
-    /// A query by its name.
+    /// Returns a query by name.
     pub fn find(&self, name: &str) -> Option<&NamedQuery> {
         self.0.iter().find(|query| query.name == name)
     }
 
-    /// Names near to one that does not exist.
+    /// Returns the names that are similar to an unknown one.
     pub fn near(&self, name: &str) -> Vec<&str> {
         nearest(name, self.0.iter().map(|query| query.name.as_str()))
     }
 }
 
-/// The name of a file from what a person has typed: blanks become hyphens. None if other signs than letters, digits,
-/// `-` and `_` are in it, or if it is too long.
+/// Converts a typed name to a file name: spaces become hyphens. Returns `None` if it has characters other than letters,
+/// digits, `-` and `_`, or is too long.
 pub fn file_name(typed: &str) -> Option<String> {
     let name = typed.split_whitespace().collect::<Vec<_>>().join("-").to_lowercase();
     let fits = |letter: char| letter.is_alphanumeric() || matches!(letter, '-' | '_');
     (!name.is_empty() && name.len() <= LONGEST_NAME && name.chars().all(fits)).then_some(name)
 }
 
-/// Saves a person's own query, over one of the same name; returns its file. A statement without a title gets one.
+/// Saves a query of the user, replacing one with the same name, and returns its path. Adds the title if the statement has
+/// none.
 ///
 /// # Errors
-/// There is no folder for it, or it cannot be written.
+/// There is no configuration folder, or the file cannot be written.
 pub fn save(configuration: &Configuration, name: &str, title: &str, sql: &str) -> Result<PathBuf, RunError> {
     let folder = configuration.folder.clone().unwrap_or_default().join(FOLDER);
     create_folder(&folder)?;
@@ -295,7 +293,7 @@ mod tests {
         let mine = library.find("mine").expect("saved");
         assert_eq!((mine.title.as_str(), mine.body(), mine.own), ("Mine!", "SELECT 3", true));
         assert_eq!(library.find("economy").map(|own| own.title.as_str()), Some("Other"));
-        assert_eq!(library.queries()[0].name, "economy", "own ones first, by name");
+        assert_eq!(library.queries()[0].name, "economy", "user queries come first, by name");
         assert_eq!(library.near("econmy"), ["economy"]);
     }
 
@@ -305,7 +303,7 @@ mod tests {
         std::fs::create_dir(folder.path().join("queries")).expect("a folder");
         std::fs::write(folder.path().join("queries/broken.sql"), [0xff, 0xfe]).expect("a file");
         let library = Library::of(&Configuration { folder: Some(folder.path().to_owned()), voice: None });
-        let broken = library.find("broken").expect("it stands in the list");
+        let broken = library.find("broken").expect("it is listed");
         assert!(broken.what.contains("broken.sql") && broken.sql.is_empty(), "{broken:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! The lock of a run: one program at a time writes it.
+//! The lock of a run: only one program at a time can write it.
 
 use std::fs::{File, TryLockError};
 use std::io::{ErrorKind, Write};
@@ -8,21 +8,21 @@ use std::time::Duration;
 
 use crate::error::RunError;
 
-/// Whether a program plays the run at this moment.
+/// Returns whether a program has the run open for play.
 pub fn is_being_played(folder: &Path) -> bool {
     let file = File::open(folder.join("lock"));
     file.is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
 }
 
-/// File in the folder of a run that says where programs reach it.
+/// File in the run folder with the address of its server.
 pub const SERVER_FILE: &str = "server.json";
 
-/// Whether a server plays the run for a program at this moment; one that was killed leaves only its file.
+/// Returns whether a server has the run open. A killed server leaves its file but not its lock.
 pub fn is_served(folder: &Path) -> bool {
     folder.join(SERVER_FILE).exists() && is_being_played(folder)
 }
 
-/// Claims a run for writing; the claim ends with the program, however it ends.
+/// Locks a run for writing. The operating system releases the lock when the process ends.
 pub fn lock_run(folder: &Path, id: &str) -> Result<File, RunError> {
     let path = folder.join("lock");
     let open = File::options().create(true).truncate(false).read(true).write(true).open(&path);
@@ -34,7 +34,7 @@ pub fn lock_run(folder: &Path, id: &str) -> Result<File, RunError> {
     })?;
     match lock_past_looks(&file) {
         Ok(()) => {
-            // Only for people who look; the lock itself is what counts.
+            // For information only; the lock on the file decides.
             let _ = file.set_len(0).and_then(|()| writeln!(file, "process {}", std::process::id()));
             Ok(file)
         }
@@ -46,11 +46,11 @@ pub fn lock_run(folder: &Path, id: &str) -> Result<File, RunError> {
     }
 }
 
-/// Attempts to take a lock that only looks keep, 2 ms apart.
+/// Maximum attempts, 2 ms apart, while only shared locks are held.
 const ATTEMPTS: u32 = 500;
 
-/// Takes a lock. A look ([`is_being_played`]) holds it for a moment, together with other looks: it is waited for. A program that
-/// plays the run holds it alone: that one is not.
+/// Takes the exclusive lock. Waits for the brief shared locks of [`is_being_played`], but not for an exclusive lock of a
+/// program that plays the run.
 fn lock_past_looks(file: &File) -> Result<(), TryLockError> {
     for _ in 0..ATTEMPTS {
         match file.try_lock() {
@@ -70,7 +70,7 @@ mod tests {
 
     use super::*;
 
-    /// Ends the looks, also when an assertion fails.
+    /// Stops the probing threads, also when an assertion fails.
     struct EndLooks<'a>(&'a AtomicBool);
 
     impl Drop for EndLooks<'_> {

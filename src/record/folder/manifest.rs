@@ -1,4 +1,4 @@
-//! `run.toml`: what a run is (docs/formats/run-folder.md#runtoml).
+//! The manifest of a run, `run.toml` (docs/formats/run-folder.md#runtoml).
 
 use std::path::Path;
 
@@ -24,22 +24,22 @@ use novamind_world::params::{ParameterError, ParameterSource, Params, shipped_so
 /// Format of trajectories and manifests that this program writes.
 pub const FORMAT: u32 = 2;
 
-/// What a run is; written once, never changed.
+/// The manifest of a run. It is written once and never changed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Manifest {
     /// Format of the run's files.
     pub format: u32,
-    /// Version of the program that created it.
+    /// Version of the program that created the run.
     pub version: String,
-    /// Number of the mechanics it is played by; runs of the first builds do not name it.
+    /// Number of the mechanics; runs of the first builds do not have it.
     #[serde(default = "first_mechanics")]
     pub mechanics: u32,
-    /// Name of the run: eight hexadecimal digits.
+    /// Id of the run: eight hexadecimal digits.
     pub id: String,
-    /// When it was created, RFC 3339.
+    /// Moment of creation, RFC 3339.
     pub created: String,
-    /// Seed of all chance.
+    /// Seed of all random draws.
     pub seed: u64,
     /// Last day.
     pub days: u32,
@@ -49,55 +49,55 @@ pub struct Manifest {
     pub scenario: String,
     /// Mode.
     pub mode: Mode,
-    /// Who plays, as the experimenter names them.
+    /// Label of the participant.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub participant: Option<String>,
-    /// Earlier runs of the same person with this seed and scenario.
+    /// Number of earlier runs of the same participant with this seed and scenario.
     pub earlier_runs: u32,
     /// Digest of the effective parameters.
     pub parameters_digest: String,
-    /// The mechanism that is wrong on purpose; debug runs only.
+    /// The seeded fault; debug runs only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fault: Option<Fault>,
-    /// Which text the person agreed to, and when; none if none was asked for.
+    /// The consent; `None` if none was required.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub consent: Option<Consent>,
-    /// Run and line this one branched from.
+    /// Parent run and line of a branch.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub parent: Option<Parent>,
-    /// The study it belongs to.
+    /// The study of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub study: Option<StudyStamp>,
-    /// The lesson it belongs to.
+    /// The lesson of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lesson: Option<LessonStamp>,
-    /// The hand-out of a class that it began with.
+    /// The handout from which the run started.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub handout: Option<HandoutStamp>,
-    /// The language model that lends its voice; none in nearly all runs.
+    /// The language model that words texts, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub voice: Option<ModelStamp>,
-    /// By which rules it is played; none in runs of format 1.
+    /// Session rules; `None` in runs of format 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rules: Option<SessionRules>,
-    /// Everything that the same person played before.
+    /// Earlier runs of the same participant.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub earlier: Vec<EarlierRun>,
-    /// Every parameter that differs from the shipped ones.
+    /// Parameters that differ from the bundled ones.
     #[serde(default, skip_serializing_if = "Table::is_empty")]
     pub parameters: Table,
 }
 
 impl Manifest {
-    /// The name of the run as a number; 0 for a name that is none.
+    /// Returns the id as a number, or 0 if it is not hexadecimal.
     pub fn number(&self) -> u32 {
         u32::from_str_radix(&self.id, 16).unwrap_or(0)
     }
 
-    /// Reads the manifest of a run's folder.
+    /// Reads the manifest in a run folder.
     ///
     /// # Errors
-    /// It is missing, damaged, or of another format.
+    /// The file is missing, damaged, or has another format.
     pub fn read(folder: &Path) -> Result<Manifest, RunError> {
         let path = folder.join("run.toml");
         let text = std::fs::read_to_string(&path).map_err(RunError::io(&path))?;
@@ -116,7 +116,7 @@ impl Manifest {
         manifest.understood()
     }
 
-    /// This manifest, if this program plays by its mechanics and reads its format.
+    /// Returns the manifest if this program supports its mechanics and format.
     fn understood(self) -> Result<Manifest, RunError> {
         if self.format > FORMAT {
             return Err(RunError::OtherFormat { id: self.id, format: self.format, known: FORMAT });
@@ -130,17 +130,16 @@ impl Manifest {
             });
         }
         if self.fault.is_some() && self.mode != Mode::Debug {
-            let message =
-                format!("run {} is said to have a planted fault, which only a debug run can have", self.id);
+            let message = format!("run {} names a seeded fault, which only a debug run can have", self.id);
             return Err(RunError::NotPossible(message));
         }
         Ok(self)
     }
 
-    /// The manifest as the first line of a trajectory tells it, for one that stands alone.
+    /// Builds the manifest from the first line of a trajectory.
     ///
     /// # Errors
-    /// The line is no start of a run.
+    /// The line does not start a run.
     pub fn of_start(path: &Path, line: Option<&Line>) -> Result<Manifest, RunError> {
         let damaged = |problem: &str| RunError::Damaged {
             path: path.to_owned(),
@@ -181,7 +180,7 @@ impl Manifest {
         .understood()
     }
 
-    /// Writes the manifest into a run's folder, so that it is there whole or not at all.
+    /// Writes the manifest to a run folder atomically.
     ///
     /// # Errors
     /// The folder cannot be written.
@@ -190,13 +189,13 @@ impl Manifest {
         write_whole(&path, self.text().as_bytes())
     }
 
-    /// The manifest as its file holds it.
+    /// Returns the text of `run.toml`.
     pub fn text(&self) -> String {
         toml::to_string(self).expect("a manifest holds plain values")
     }
 
-    /// By which rules it is played. A practice shows no result, whatever the session shows: figures of how somebody
-    /// played would tell them before the session what is looked at.
+    /// Returns the session rules. A practice run never shows results: they would reveal what the study measures before the
+    /// session.
     pub fn session_rules(&self) -> SessionRules {
         let rules = self.recorded_rules();
         match self.is_practice() {
@@ -205,34 +204,34 @@ impl Manifest {
         }
     }
 
-    /// The rules that the start of the run records; those of its mode, where it records none.
+    /// Returns the recorded rules, or those of the mode if none are recorded.
     pub fn recorded_rules(&self) -> SessionRules {
         self.rules.clone().unwrap_or_else(|| SessionRules::of_mode(self.mode))
     }
 
-    /// Whether it is the practice of a study.
+    /// Returns whether the run is the practice of a study.
     pub fn is_practice(&self) -> bool {
         self.study.as_ref().is_some_and(|study| study.practice)
     }
 
-    /// Whether the run is played by other rules than the shipped scenario whose name it has: parameters, or a fault.
+    /// Returns whether parameters or a seeded fault differ from the bundled scenario with the run's scenario name.
     pub fn has_own_parameters(&self) -> bool {
         let shipped = Configuration::shipped();
         let as_shipped = || shipped.parameters(&shipped.scenario(&self.scenario).ok()?, &[], false).ok();
         match self.scenario.as_str() {
-            // Lists of runs ask this of every run, and nearly all of them are of this kind.
+            // A shortcut for lists of runs: most runs use this scenario.
             "default" => !self.parameters.is_empty() || self.fault.is_some(),
-            // A scenario can use keys that the version that recorded the run did not know.
+            // A scenario can have keys that the recording version did not know.
             _ => as_shipped().is_none_or(|params| {
                 ![params.digest(), params.earlier_digest()].contains(&self.parameters_digest)
             }),
         }
     }
 
-    /// The parameters the run was recorded with.
+    /// Returns the parameters with which the run was recorded.
     ///
     /// # Errors
-    /// This program's parameters are others, or the differences do not fit it.
+    /// The bundled parameters of this program differ from those of the recording version.
     pub fn params(&self) -> Result<Params, RunError> {
         let other = |own: String| RunError::OtherParameters {
             id: self.id.clone(),
@@ -250,12 +249,12 @@ impl Manifest {
     }
 }
 
-/// How many of a person's runs were in this world with this luck.
+/// Returns how many of the earlier runs have this seed and scenario.
 pub fn same_world(earlier: &[EarlierRun], seed: u64, scenario: &str) -> u32 {
     earlier.iter().filter(|run| run.seed == seed && run.scenario == scenario).count() as u32
 }
 
-/// Every parameter that differs from the shipped ones, as a table of tables.
+/// Returns the parameters that differ from the bundled ones, as a table of tables.
 pub fn differences(params: &Params) -> Table {
     let as_table = |params: &Params| match Value::try_from(params) {
         Ok(Value::Table(table)) => table,
@@ -276,7 +275,7 @@ fn differing(own: &Table, shipped: &Table) -> Table {
         .collect()
 }
 
-/// The first line of a trajectory: what the manifest says.
+/// Returns the first line of a trajectory for a manifest.
 pub fn start_of(manifest: &Manifest) -> Record {
     let manifest = manifest.clone();
     Record::Start(Box::new(Start {

@@ -1,4 +1,4 @@
-//! The folder of runs: what a run is, how one begins, what is kept of it, and where scenarios, consent and queries lie.
+//! The folder of runs: manifests, locks, lists and previews, and the configuration with scenarios, consent and queries.
 
 pub mod configuration;
 pub mod derived;

@@ -1,5 +1,4 @@
-//! How a run of the folder went, read from the lines that close its weeks: for lists and comparisons, without
-//! simulating anything.
+//! Previews of runs for lists and comparisons, read from the lines that close weeks, without simulation.
 
 use std::io::{BufRead, BufReader};
 use std::path::Path;
@@ -16,20 +15,20 @@ use crate::trajectory::{Line, Record};
 /// The preview of a run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct RunPreview {
-    /// Day and cash: day 0, then every day on which a week ended.
+    /// Day and cash on day 0 and at the end of each week.
     pub cash: Vec<(u32, f64)>,
     /// Active subscriptions of individuals after the last week.
     pub subscribers: u64,
-    /// Seats of companies after the last week.
+    /// Enterprise seats after the last week.
     pub seats: u64,
     /// Monthly recurring revenue after the last week, dollars.
     pub recurring_revenue: f64,
 }
 
-/// Reads the preview of a run. Lines that cannot be read are passed over: opening the run tells what is wrong with it.
+/// Reads the preview of a run. Skips unreadable lines, because opening the run reports them.
 ///
 /// # Errors
-/// The run or its files are not there.
+/// The run or its files do not exist.
 pub fn run_preview(runs: &Path, id: &str) -> Result<RunPreview, RunError> {
     let folder = run_folder(runs, id);
     let Derived { manifest, .. } = Derived::of(&folder)?;
@@ -40,7 +39,7 @@ pub fn run_preview(runs: &Path, id: &str) -> Result<RunPreview, RunError> {
     for line in BufReader::new(file).split(b'\n') {
         let line = line.map_err(RunError::io(&path))?;
         let text = String::from_utf8_lossy(&line);
-        // Most lines are calls; only those that look like the end of a week are read.
+        // Most lines are calls; parse only those that look like the end of a week.
         if closing.iter().any(|kind| text.contains(kind))
             && let Some(line) = Line::unchecked(text.as_bytes())
         {

@@ -1,4 +1,4 @@
-//! The folder of runs: names, locks, the list.
+//! Folders of runs: listing, finding and deleting runs.
 
 use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -16,14 +16,14 @@ use crate::trajectory::policy_of;
 use crate::trajectory::record::Ended;
 use crate::trajectory::{Line, Record};
 
-/// A run in the list.
+/// A run in a list.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RunSummary {
-    /// Name.
+    /// Id.
     pub id: String,
-    /// When it was created, RFC 3339.
+    /// Moment of creation, RFC 3339.
     pub created: String,
-    /// When it was last played, RFC 3339.
+    /// Moment of the last recorded line, RFC 3339.
     pub played: String,
     /// Mode.
     pub mode: Option<Mode>,
@@ -31,18 +31,18 @@ pub struct RunSummary {
     pub seed: u64,
     /// Scenario.
     pub scenario: String,
-    /// The parameters are others than those of the shipped scenario of that name.
+    /// Whether parameters differ from the bundled scenario with that name.
     pub has_own_parameters: bool,
-    /// A language model judges the posts of the player.
+    /// Whether a language model scores the posts of the player.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub judged_by_model: bool,
-    /// It goes on from weeks of another run.
+    /// Whether it continues weeks of another run.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub is_branch: bool,
-    /// The policy that decides its weeks; none where somebody else decides one, as far as its last lines tell.
+    /// The policy that decided all weeks among the last lines, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub policy: Option<String>,
-    /// Who plays.
+    /// Label of the participant.
     pub participant: Option<String>,
     /// Last simulated day.
     pub day: u32,
@@ -52,29 +52,29 @@ pub struct RunSummary {
     pub starting_cash: f64,
     /// Cash after the last week, dollars.
     pub cash: f64,
-    /// How it ended, if it did.
+    /// How it ended; `None` if it is unfinished.
     pub ended: Option<Ended>,
-    /// A program plays it at this moment, through a server.
+    /// Whether a server has it open.
     pub is_served: bool,
-    /// The run of which this folder is a copy under another name, if it is one.
+    /// Id of the run of which this folder is a copy under another name, if it is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub copy_of: Option<String>,
-    /// Why it cannot be read, if it cannot.
+    /// Why it cannot be read, if so.
     pub problem: Option<String>,
 }
 
-/// Folder of a run.
+/// Returns the folder of a run.
 pub fn run_folder(runs: &Path, id: &str) -> PathBuf {
     runs.join(id)
 }
 
-/// Folder, below that of all runs, in which participants have folders of their own.
+/// Subfolder of the common folder of runs with one folder per participant.
 pub const PARTICIPANTS: &str = "participants";
 
-/// Folder of one participant's runs, so that several people at one machine do not meet each other's by accident.
+/// Returns the folder of a participant's runs. Separate folders keep participants on one machine apart.
 ///
 /// # Errors
-/// The label cannot name a folder.
+/// The label is not a valid folder name.
 pub fn participant_folder(runs: &Path, label: &str) -> Result<PathBuf, String> {
     let fits = |letter: char| letter.is_ascii_alphanumeric() || "-_.".contains(letter);
     if label.is_empty() || label.len() > 40 || label.starts_with('.') || !label.chars().all(fits) {
@@ -86,29 +86,28 @@ pub fn participant_folder(runs: &Path, label: &str) -> Result<PathBuf, String> {
     Ok(runs.join(PARTICIPANTS).join(label))
 }
 
-/// What the folder of a branch begins with that is not whole yet.
+/// Prefix of staging folders, which hold branches that are not complete yet.
 pub const UNNAMED: &str = ".branch-";
 
-/// Whether a folder holds a branch that is not whole yet, or what is left of one: it is no run.
+/// Returns whether a folder is a staging folder. It is not a run.
 pub fn is_unnamed(folder: &Path) -> bool {
     folder.file_name().is_some_and(|name| name.to_string_lossy().starts_with(UNNAMED))
 }
 
-/// Whose runs a folder holds, if it is a participant's own.
+/// Returns the label of the participant whose runs a folder holds, if any.
 pub fn label_of(runs: &Path) -> Option<String> {
     let own = runs.parent()?.file_name()? == PARTICIPANTS;
     runs.file_name().filter(|_| own).map(|label| label.to_string_lossy().into_owned())
 }
 
-/// The folder of the runs of all participants that a folder of runs belongs to, and the label of the participant whose own
-/// folder it is.
+/// Returns the common folder of runs for a folder of runs, and the label of the participant if it is a participant's folder.
 pub fn base_of_runs(runs: &Path) -> (&Path, Option<String>) {
     let label = label_of(runs);
     let base = label.as_ref().and_then(|_| runs.parent()?.parent());
     (base.unwrap_or(runs), label)
 }
 
-/// Every folder of runs that belongs with this one: the common one, then those of the participants by their labels.
+/// Returns all related folders of runs: the common one, then those of the participants by label.
 pub fn all_run_folders(runs: &Path) -> Vec<PathBuf> {
     let (base, _) = base_of_runs(runs);
     let entries = std::fs::read_dir(base.join(PARTICIPANTS)).into_iter().flatten().flatten();
@@ -118,7 +117,7 @@ pub fn all_run_folders(runs: &Path) -> Vec<PathBuf> {
     own
 }
 
-/// All runs, the last played first.
+/// Returns all runs, the last played first.
 ///
 /// # Errors
 /// The folder exists and cannot be read.
@@ -149,7 +148,7 @@ fn summarise(folder: &Path) -> RunSummary {
         Ok(lines) => (lines, None),
         Err(problem) => (Vec::new(), Some(problem)),
     };
-    // Day and cash after the days that ran last, and how the run ended.
+    // Day and cash after the last simulated days, and how the run ended.
     let closed = last.iter().rev().find_map(|line| match &line.record {
         Record::Week(closing) | Record::Step(closing) => Some((line.day, closing.cash)),
         Record::End(end) => Some((line.day, end.cash)),
@@ -178,7 +177,7 @@ fn summarise(folder: &Path) -> RunSummary {
         starting_cash: manifest.cash,
         cash: match closed {
             Some((_, cash)) => cash,
-            // Nobody knows what is left.
+            // The remaining cash is unknown.
             None if problem.is_some() => 0.0,
             None => manifest.cash,
         },
@@ -188,12 +187,11 @@ fn summarise(folder: &Path) -> RunSummary {
     }
 }
 
-/// Whether parameters may have been set while a run went on: in debug runs, in lessons, and in what branches from them.
+/// Returns whether parameters may have been set during the run: debug runs, lessons, and their branches.
 fn may_set_parameters(manifest: &Manifest) -> bool {
     manifest.mode == Mode::Debug || manifest.lesson.is_some() || manifest.parent.is_some()
 }
 
-/// Whether a run has set a parameter while it went on.
 fn sets_parameters(trajectory: &Path) -> bool {
     let Ok(bytes) = read_regular_file(trajectory) else { return false };
     let kind = br#""kind":"override""#;
@@ -224,10 +222,10 @@ fn unreadable(id: String, problem: String) -> RunSummary {
     }
 }
 
-/// The lines at the end of a trajectory, enough to hold its last week; read from the end, for runs may be long.
+/// Returns the last lines of a trajectory, including its last week. Reads from the end, because runs can be long.
 ///
 /// # Errors
-/// The file cannot be read, or holds no line: then nobody knows how far the run has come.
+/// The file cannot be read, or has no readable line.
 pub fn last_lines(path: &Path) -> Result<Vec<Line>, String> {
     let mut window: u64 = 64 << 10;
     loop {
@@ -253,23 +251,23 @@ fn tail(path: &Path, window: u64) -> std::io::Result<(String, bool)> {
     Ok((String::from_utf8_lossy(&bytes).into_owned(), window >= length))
 }
 
-/// The folder of a run to play, by its name, a unique beginning of it, or `latest`: the newest unfinished one.
+/// Returns the folder of a run to play by id, unique prefix, or `latest`: the newest unfinished run.
 ///
 /// # Errors
-/// There is none, or several begin like this.
+/// No run matches, or several do.
 pub fn find_run(runs: &Path, id: &str) -> Result<PathBuf, RunError> {
     find(runs, id, |run| run.ended.is_none())
 }
 
-/// The folder of a run to read, by its name, a unique beginning of it, or `latest`: the newest one.
+/// Returns the folder of a run to read by id, unique prefix, or `latest`: the newest run.
 ///
 /// # Errors
-/// There is none, or several begin like this.
+/// No run matches, or several do.
 pub fn find_run_to_read(runs: &Path, id: &str) -> Result<PathBuf, RunError> {
     find(runs, id, |_| true)
 }
 
-/// Whoever is nobody in particular finds the runs of all participants, as a list shows them.
+/// Searches the runs of all participants if the folder is the common one.
 fn find(runs: &Path, id: &str, wanted: impl Fn(&RunSummary) -> bool) -> Result<PathBuf, RunError> {
     let missing = || RunError::NotFound { id: id.to_owned(), folder: runs.to_owned() };
     let folders = if label_of(runs).is_some() { vec![runs.to_owned()] } else { all_run_folders(runs) };
@@ -277,7 +275,7 @@ fn find(runs: &Path, id: &str, wanted: impl Fn(&RunSummary) -> bool) -> Result<P
     for folder in folders {
         list.extend(list_runs(&folder)?.into_iter().map(|run| (folder.join(&run.id), run)));
     }
-    // Of those played at the same moment the first in the common folder.
+    // For equal moments, the common folder wins.
     list.sort_by(|(_, one), (_, other)| other.played.cmp(&one.played));
     if id == "latest" {
         let newest = list.into_iter().find(|(_, run)| run.problem.is_none() && wanted(run));
@@ -296,10 +294,10 @@ fn find(runs: &Path, id: &str, wanted: impl Fn(&RunSummary) -> bool) -> Result<P
     }
 }
 
-/// Deletes a run with everything in its folder.
+/// Deletes a run folder.
 ///
 /// # Errors
-/// It is in use, or cannot be removed.
+/// The run is in use, or the folder cannot be removed.
 pub fn delete_run(runs: &Path, id: &str) -> Result<(), RunError> {
     let folder = find_run(runs, id)?;
     let lock = lock_run(&folder, id)?;
@@ -307,8 +305,8 @@ pub fn delete_run(runs: &Path, id: &str) -> Result<(), RunError> {
     std::fs::remove_dir_all(&folder).map_err(RunError::io(&folder))
 }
 
-/// What a person has played before: runs of their label in the folder of runs and in those of its participants; of
-/// somebody without a label those in this very folder.
+/// Returns the earlier runs of a participant: those with the label in all related folders. Without a label, those in this
+/// folder.
 pub fn earlier_runs_of(runs: &Path, participant: Option<&str>) -> Vec<EarlierRun> {
     let folders = if participant.is_some() { all_run_folders(runs) } else { vec![runs.to_owned()] };
     let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());

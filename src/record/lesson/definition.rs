@@ -1,4 +1,4 @@
-//! `NAME.toml`: what a lesson is (docs/lessons/authors-guide.md).
+//! The definition of a lesson, `NAME.toml` (docs/lessons/authors-guide.md).
 
 use std::collections::BTreeMap;
 
@@ -9,133 +9,133 @@ use super::lesson_call::LessonCall;
 use super::measurement::{Measurement, MeasurementFile};
 use novamind_tools::ToolId;
 
-/// What the file of a lesson says.
+/// The definition in the file of a lesson.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LessonPlan {
-    /// What a student reads as its title.
+    /// Title for students.
     pub title: String,
-    /// Minutes that a student needs.
+    /// Minutes that a student needs for it.
     pub minutes: u32,
-    /// What the student can do, or knows, afterwards.
+    /// Skill or knowledge that the student gains.
     pub learning_goal: String,
-    /// What of the program the student has.
+    /// Parts of the program that the student can use.
     #[serde(default)]
     pub access: LessonAccess,
-    /// Companies, in the order in which they are played.
+    /// Companies, in the order of play.
     #[serde(rename = "part")]
     pub parts: Vec<LessonPart>,
-    /// What goes wrong often, and what is said then.
+    /// Common mistakes and their explanations.
     #[serde(rename = "pitfall", default)]
     pub pitfalls: Vec<Pitfall>,
-    /// A play that reaches every goal.
+    /// The reference play, which reaches every goal.
     pub good: ReferencePlay,
-    /// A play that misses a goal and meets a pitfall.
+    /// A play that misses a goal and triggers a pitfall.
     pub bad: ReferencePlay,
-    /// Figures that the texts name, each held true by the check.
+    /// Figures that the texts name; `novamind lesson check` verifies them.
     #[serde(rename = "measured", default)]
     pub measured: Vec<MeasuredFigure>,
 }
 
-/// What of the program a student has.
+/// Parts of the program that a student can use.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct LessonAccess {
-    /// The tools; all where none are named.
+    /// Tools; `None` for all.
     pub tools: Option<Vec<ToolId>>,
-    /// The screens besides the Overview; all where none are named.
+    /// Screens besides the Overview; `None` for all.
     pub screens: Option<Vec<String>>,
-    /// What is asked of forecasts before a week.
+    /// Whether forecasts are required.
     pub forecasts: ForecastsAsked,
-    /// What is asked of the rationale of a week.
+    /// Whether a rationale is required.
     pub rationale: RationaleAsked,
 }
 
 impl LessonAccess {
-    /// Whether the lesson fills in the forecasts of a week naively.
+    /// Returns whether the lesson submits naive forecasts.
     pub fn fills_forecasts(&self) -> bool {
         self.forecasts == ForecastsAsked::Naive
     }
 
-    /// Whether a week runs without a rationale.
+    /// Returns whether weeks need no rationale.
     pub fn asks_no_rationale(&self) -> bool {
         self.rationale == RationaleAsked::Off
     }
 }
 
-/// What is asked of forecasts before a week.
+/// Forecasts before a week.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ForecastsAsked {
-    /// The student makes them.
+    /// The student enters them.
     Required,
-    /// They are filled in naively.
+    /// The lesson fills in naive forecasts.
     #[default]
     Naive,
 }
 
-/// What is asked of the rationale of a week.
+/// Rationale before a week.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum RationaleAsked {
     /// The student writes it.
     Required,
-    /// The week runs without.
+    /// Not required.
     #[default]
     Off,
 }
 
-/// A company of a lesson, and what is done with it.
+/// One company of a lesson, with its steps.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LessonPart {
-    /// What tells it from the other parts.
+    /// Title.
     #[serde(default)]
     pub title: String,
-    /// Its scenario.
+    /// Scenario.
     #[serde(default = "default_scenario")]
     pub scenario: String,
-    /// The seed that a student plays.
+    /// Seed of the students' runs.
     pub seed: u64,
-    /// Cash on day 0, dollars; as the scenario says if left out.
+    /// Cash on day 0, dollars; defaults to that of the scenario.
     pub cash: Option<f64>,
-    /// Last day of the company, which enters the mechanics; as the scenario says if left out. The lesson ends before.
+    /// Last day of the company, which affects the mechanics; defaults to that of the scenario. The lesson ends earlier.
     pub days: Option<u32>,
-    /// Whether there are demand surges.
+    /// Whether demand surges occur.
     #[serde(default)]
     pub surges: bool,
-    /// Who moves the capacity.
+    /// Control of the capacity tier.
     #[serde(default)]
     pub capacity: CapacityMover,
     /// Parameters in force from day 0, by their full keys.
     #[serde(default)]
     pub parameters: BTreeMap<String, Value>,
-    /// Weeks that are played before the student sees the company.
+    /// Weeks that are simulated before the student sees the company.
     #[serde(default)]
     pub start_weeks: u32,
     /// Calls before the student sees the company.
     #[serde(default)]
     pub start: Vec<ScheduledCalls>,
-    /// Steps, in their order.
+    /// Steps, in order.
     #[serde(rename = "step")]
     pub steps: Vec<LessonStep>,
 }
 
 impl LessonPart {
-    /// Whether the capacity follows usage by itself.
+    /// Returns whether the capacity tier follows usage automatically.
     pub fn moves_capacity(&self) -> bool {
         self.capacity == CapacityMover::FollowsUsage
     }
 }
 
-/// Who moves the capacity.
+/// Control of the capacity tier.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 pub enum CapacityMover {
     /// The student.
     #[default]
     #[serde(rename = "manual")]
     Student,
-    /// It moves by itself: one tier a week towards the one that usage needs.
+    /// Automatic: one tier per week towards the tier that usage needs.
     #[serde(rename = "follows usage")]
     FollowsUsage,
 }
@@ -144,42 +144,42 @@ fn default_scenario() -> String {
     crate::folder::configuration::DEFAULT_SCENARIO.to_owned()
 }
 
-/// A step of a lesson: a task over some weeks.
+/// A step of a lesson: a task of one or more weeks.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LessonStep {
-    /// Its title.
+    /// Title.
     pub title: String,
-    /// What the student reads.
+    /// Text for the student.
     pub text: String,
-    /// Weeks that it takes.
+    /// Duration in weeks.
     pub weeks: u32,
-    /// Parameters that the lesson sets at its beginning, by their full keys.
+    /// Parameters that the lesson sets at the start of the step, by their full keys.
     #[serde(default)]
     pub parameters: BTreeMap<String, Value>,
-    /// What is asked before its weeks run.
+    /// Question before the step is simulated.
     pub guess: Option<Guess>,
-    /// What is to be reached.
+    /// Goals.
     #[serde(rename = "goal", default)]
     pub goals: Vec<LessonGoal>,
-    /// Hints, from a nudge to nearly the answer.
+    /// Hints, from vague to nearly the solution.
     #[serde(default)]
     pub hints: Vec<String>,
 }
 
-/// A question that is asked before the weeks of a step run.
+/// A question before a step is simulated.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(try_from = "GuessFile")]
 pub struct Guess {
     /// The question.
     pub question: String,
-    /// What kind of answer it takes.
+    /// Kind of the answer.
     pub form: GuessForm,
-    /// When the outcome is told.
+    /// When the outcome is shown.
     pub told: GuessTold,
 }
 
-/// When what came of a question is measured and told.
+/// When the outcome of a guess is measured and shown.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum GuessTold {
@@ -190,21 +190,21 @@ pub enum GuessTold {
     Part,
 }
 
-/// What kind of answer a question takes.
+/// Kind of the answer to a question.
 #[derive(Debug, Clone, PartialEq)]
 pub enum GuessForm {
-    /// A number; what came of it is measured at the end of the step.
+    /// A number; its outcome is measured at the end of the step.
     Number {
-        /// What was to be guessed.
+        /// Measurement of the outcome.
         outcome: Measurement,
-        /// What it is counted in: `$`, `%`, or a word.
+        /// Unit: `$`, `%`, or a word.
         unit: String,
     },
-    /// One of some answers.
+    /// One of several answers.
     Choice {
-        /// What can be chosen.
+        /// Answers.
         choices: Vec<String>,
-        /// Number of the right one, counted from 0.
+        /// Index of the correct answer, from 0.
         answer: usize,
     },
 }
@@ -235,48 +235,51 @@ impl TryFrom<GuessFile> for Guess {
             },
             (Some(choices), Some(answer)) if figure.is_none() && sql.is_none() => {
                 if choices.len() < 2 || !(1..=choices.len()).contains(&answer) {
-                    return Err("choices are two or more, and answer is the number of one of them".to_owned());
+                    return Err(
+                        "a guess needs at least two choices, and answer must be the number of one of them"
+                            .to_owned(),
+                    );
                 }
                 GuessForm::Choice { choices, answer: answer - 1 }
             }
-            _ => return Err("a guess has a figure or sql, or choices with an answer".to_owned()),
+            _ => return Err("a guess needs a figure, sql, or choices with an answer".to_owned()),
         };
         Ok(Guess { question, form, told })
     }
 }
 
-/// Something to be reached in a step.
+/// A goal of a step.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(try_from = "GoalFile")]
 pub struct LessonGoal {
-    /// What the student reads.
+    /// Text for the student.
     pub text: String,
-    /// What is measured at the end of the step.
+    /// Measurement at the end of the step.
     pub measurement: Measurement,
-    /// How far it has to go.
+    /// Bound to reach.
     pub bound: GoalBound,
-    /// Whether it counts dollars.
+    /// Whether the value is in dollars.
     pub in_dollars: bool,
 }
 
-/// How far a figure has to go.
+/// Bound of a goal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum GoalBound {
-    /// At least so much.
+    /// At least this value.
     AtLeast(f64),
-    /// At most so much.
+    /// At most this value.
     AtMost(f64),
-    /// At least this times what the good play has on the same seed.
+    /// At least this multiple of the reference play's value on the same seed.
     OfGoodPlay(f64),
 }
 
 impl GoalBound {
-    /// Whether it depends on the good play.
+    /// Returns whether the bound depends on the reference play.
     pub fn is_relative(self) -> bool {
         matches!(self, GoalBound::OfGoodPlay(_))
     }
 
-    /// The value to reach, given that of the good play; `None` if it depends on that and there is none.
+    /// Returns the value to reach, given that of the reference play. Returns `None` if that is needed and missing.
     pub fn value(self, good: Option<f64>) -> Option<f64> {
         match self {
             GoalBound::AtLeast(bound) | GoalBound::AtMost(bound) => Some(bound),
@@ -284,7 +287,7 @@ impl GoalBound {
         }
     }
 
-    /// Whether a value reaches a bound.
+    /// Returns whether a value reaches the bound.
     pub fn is_reached(self, value: f64, bound: f64) -> bool {
         if matches!(self, GoalBound::AtMost(_)) { value <= bound } else { value >= bound }
     }
@@ -315,35 +318,35 @@ impl TryFrom<GoalFile> for LessonGoal {
         ];
         let mut bounds = bounds.into_iter().flatten();
         let (Some(bound), None) = (bounds.next(), bounds.next()) else {
-            return Err("a goal has one of at_least, at_most and relative".to_owned());
+            return Err("a goal needs exactly one of at_least, at_most and relative".to_owned());
         };
         let measurement = Measurement::try_from(MeasurementFile { figure, sql, over })?;
         let in_dollars = match unit.as_deref() {
             None => measurement.counts_dollars(),
             Some("$") if measurement.needs_database() => true,
-            Some(_) => return Err("the unit of a goal is $, beside sql".to_owned()),
+            Some(_) => return Err("the unit of a goal must be $, and needs sql".to_owned()),
         };
         Ok(LessonGoal { text, measurement, bound, in_dollars })
     }
 }
 
-/// Something that goes wrong often.
+/// A common mistake.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(try_from = "PitfallFile")]
 pub struct Pitfall {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// The part in which it is looked for, counted from 0.
+    /// Part in which it is checked, from 0.
     pub part: usize,
-    /// What is measured after every week.
+    /// Measurement after every week.
     pub measurement: Measurement,
-    /// Where it begins.
+    /// Values that trigger it.
     pub bound: PitfallBound,
-    /// What is said when it is met.
+    /// Explanation for the student.
     pub say: String,
 }
 
-/// Where a pitfall begins.
+/// Values that trigger a pitfall.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PitfallBound {
     /// Above this.
@@ -353,14 +356,14 @@ pub enum PitfallBound {
 }
 
 impl PitfallBound {
-    /// The bound itself.
+    /// Returns the threshold.
     pub fn limit(self) -> f64 {
         match self {
             PitfallBound::Above(limit) | PitfallBound::Below(limit) => limit,
         }
     }
 
-    /// Whether a value is beyond it.
+    /// Returns whether a value triggers the pitfall.
     pub fn is_met_by(self, value: f64) -> bool {
         match self {
             PitfallBound::Above(limit) => value > limit,
@@ -389,67 +392,67 @@ impl TryFrom<PitfallFile> for Pitfall {
         let bound = match (above, below) {
             (Some(above), None) => PitfallBound::Above(above),
             (None, Some(below)) => PitfallBound::Below(below),
-            _ => return Err("a pitfall has either above or below".to_owned()),
+            _ => return Err("a pitfall needs either above or below".to_owned()),
         };
         let measurement = Measurement::try_from(MeasurementFile { figure, sql, over: None })?;
         Ok(Pitfall { name, part: from_one(part)?, measurement, bound, say })
     }
 }
 
-/// A play that others are held against.
+/// A play with which students' runs are compared.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReferencePlay {
-    /// What it does, in words.
+    /// Description.
     pub text: String,
-    /// What it does in each part, in words, where the parts have little in common.
+    /// Description of each part, if the parts have little in common.
     #[serde(default)]
     pub texts: Vec<String>,
-    /// The pitfall that it meets; the bad play names one.
+    /// The pitfall that it triggers; the bad play names one.
     pub pitfall: Option<String>,
-    /// Its calls.
+    /// Calls.
     #[serde(rename = "play", default)]
     pub plays: Vec<ScheduledCalls>,
 }
 
 impl ReferencePlay {
-    /// What it does in a part, in words.
+    /// Returns the description of a part.
     pub fn text_of(&self, part: usize) -> &str {
         self.texts.get(part).unwrap_or(&self.text)
     }
 
-    /// Whether it does anything in a part.
+    /// Returns whether it has calls in a part.
     pub fn plays_in(&self, part: usize) -> bool {
         self.plays.iter().any(|own| own.part == part)
     }
 }
 
-/// Seeds over which measured figures are means.
+/// Seeds over which measured figures are averaged.
 pub const MEASURED_SEEDS: std::ops::RangeInclusive<u64> = 1..=6;
 
-/// A figure that texts name as `{name}`: its mean over the seeds of the check.
+/// A figure that texts name as `{name}`: its mean over [`MEASURED_SEEDS`].
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(try_from = "MeasuredFile")]
 pub struct MeasuredFigure {
-    /// Its name in texts.
+    /// Name in texts.
     pub name: String,
-    /// The part that is played, counted from 0.
+    /// Part that is played, from 0.
     pub part: usize,
-    /// What it is.
+    /// Description.
     pub text: String,
-    /// What is measured.
+    /// Measurement.
     pub measurement: Measurement,
-    /// The week of the company after which it is measured; the last of the part if left out.
+    /// Week of the company after which it is measured; defaults to the last of the part.
     pub week: Option<u32>,
-    /// Its value.
+    /// Value.
     pub value: f64,
-    /// What a statement counts: `$`, `%` of a share, the number of a `day`, or nothing.
+    /// Unit of a statement's number: `$`, `%` of a share, `day`, or empty.
     pub unit: String,
-    /// What is played after the start of the part.
+    /// Calls after the start of the part.
     pub plays: Vec<ScheduledCalls>,
-    /// Its scenario, where it is measured in another world than the part is played in.
+    /// Scenario, if it differs from that of the part.
     pub scenario: Option<String>,
-    /// Parameters in force from day 0 besides those of the part, by their full keys.
+    /// Additional parameters in force from day 0, by their full keys.
     pub parameters: BTreeMap<String, Value>,
 }
 
@@ -481,26 +484,26 @@ impl TryFrom<MeasuredFile> for MeasuredFigure {
         let measurement = Measurement::try_from(MeasurementFile { figure, sql, over })?;
         let (part, unit) = (from_one(part)?, unit.unwrap_or_default());
         if !matches!(unit.as_str(), "" | "$" | "%" | "day") {
-            return Err(format!("a unit is $, % or day, not {unit}"));
+            return Err(format!("the unit must be $, % or day, not {unit}"));
         }
         let plays = play;
         Ok(MeasuredFigure { name, part, text, measurement, week, value, unit, plays, scenario, parameters })
     }
 }
 
-/// Calls at the beginning of some weeks of a company.
+/// Calls at the start of certain weeks of a company.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(try_from = "ScheduleFile")]
 pub struct ScheduledCalls {
-    /// The part, counted from 0.
+    /// Part, from 0.
     pub part: usize,
-    /// The first week, counted from 0: so many weeks have passed.
+    /// First week, from 0: the number of weeks that have passed.
     pub week: u32,
-    /// They are repeated every so many weeks.
+    /// Weeks between repetitions.
     pub every: Option<u32>,
-    /// The last week in which they are repeated.
+    /// Last week of the repetitions.
     pub until: Option<u32>,
-    /// The calls, in their order.
+    /// Calls, in order.
     pub calls: Vec<LessonCall>,
 }
 
@@ -520,14 +523,14 @@ impl TryFrom<ScheduleFile> for ScheduledCalls {
     fn try_from(file: ScheduleFile) -> Result<ScheduledCalls, String> {
         let ScheduleFile { part, week, every, until, calls } = file;
         if every == Some(0) || (every.is_none() && until.is_some()) {
-            return Err("every is a number of weeks from 1 on, and until stands beside it".to_owned());
+            return Err("every must be at least 1 week, and until needs every".to_owned());
         }
         Ok(ScheduledCalls { part: from_one(part)?, week, every, until, calls })
     }
 }
 
 impl ScheduledCalls {
-    /// Whether they are made at the beginning of a week of a part.
+    /// Returns whether the calls are made at the start of a week of a part.
     pub fn are_due(&self, part: usize, week: u32) -> bool {
         let repeats = |every| week >= self.week && (week - self.week).is_multiple_of(every);
         let in_time = self.until.is_none_or(|until| week <= until);
@@ -535,7 +538,7 @@ impl ScheduledCalls {
     }
 }
 
-/// The index of a part that is counted from 1 in files; the first if none is named.
+/// Returns the index of a part, which files count from 1; defaults to the first.
 fn from_one(part: Option<usize>) -> Result<usize, String> {
     part.unwrap_or(1).checked_sub(1).ok_or_else(|| "parts are counted from 1".to_owned())
 }

@@ -1,17 +1,17 @@
-//! A call as the file of a lesson writes it: a tool and its arguments, or rules for companies.
+//! Calls in the file of a lesson: a tool with its arguments, or rules for enterprises.
 
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
 use novamind_tools::{Language, ToolId, find};
 
-/// A call as the file of a lesson writes it.
+/// A call in the file of a lesson.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(try_from = "String")]
 pub enum LessonCall {
-    /// A tool is called.
+    /// A tool call.
     Tool(ToolId, Value),
-    /// Every company that waits is answered by rules.
+    /// Rules that answer every waiting enterprise.
     Rules(String),
 }
 
@@ -27,11 +27,11 @@ impl TryFrom<String> for LessonCall {
         let args = match rest.trim() {
             "" => Value::Object(Map::new()),
             rest => serde_json::from_str(rest)
-                .map_err(|error| format!("the arguments of {name} are no JSON: {error}"))?,
+                .map_err(|error| format!("the arguments of {name} are not valid JSON: {error}"))?,
         };
-        // Whoever plays a lesson would run a program of whoever wrote it.
+        // A student would run a program of the lesson's author.
         if args["code"].as_str().is_some_and(|code| Language::of(code) == Language::Python) {
-            return Err(format!("{name} in a lesson takes SQL statements, no Python"));
+            return Err(format!("{name} in a lesson takes SQL statements, not Python"));
         }
         Ok(LessonCall::Tool(tool.spec().id, args))
     }
@@ -48,7 +48,7 @@ mod tests {
         assert_eq!(call, LessonCall::Tool(ToolId::SetPrices, serde_json::json!({ "A": 12 })));
         assert_eq!(read("rules: reject rest").expect("rules"), LessonCall::Rules("reject rest".to_owned()));
         assert!(read("set_price {}").expect_err("no tool").contains("set_price"));
-        assert!(read("set_prices {A}").expect_err("no JSON").contains("no JSON"));
-        assert!(read(r##"python_exec {"code": "# python"}"##).expect_err("no SQL").contains("no Python"));
+        assert!(read("set_prices {A}").expect_err("invalid JSON").contains("not valid JSON"));
+        assert!(read(r##"python_exec {"code": "# python"}"##).expect_err("no SQL").contains("not Python"));
     }
 }

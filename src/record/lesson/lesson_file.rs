@@ -1,4 +1,4 @@
-//! A lesson as it was read: its plan and its texts.
+//! A loaded lesson: its plan and its texts.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -13,9 +13,9 @@ use crate::folder::configuration::Configuration;
 use novamind_base::notation::{cents, grouped, percent, short_dollars};
 use novamind_world::params::{ParameterError, ParameterSource};
 
-/// Name of the plan in the folder of a run.
+/// File name of the plan in a run folder.
 pub const PLAN_FILE: &str = "lesson.toml";
-/// Name of the texts in the folder of a run.
+/// File name of the texts in a run folder.
 pub const TEXTS_FILE: &str = "lesson.md";
 
 /// A lesson.
@@ -23,15 +23,15 @@ pub const TEXTS_FILE: &str = "lesson.md";
 pub struct Lesson {
     /// Name of its files.
     pub name: String,
-    /// What its file says.
+    /// Definition.
     pub plan: LessonPlan,
-    /// What a student reads at the end, in Markdown; figures stand in as `{name}`.
+    /// Debrief for students, in Markdown; `{name}` stands for a measured figure.
     pub debrief: String,
-    /// What is for instructors, in Markdown.
+    /// Notes for instructors, in Markdown.
     pub for_teachers: String,
-    /// blake3 digest of plan and texts, in hexadecimal digits.
+    /// BLAKE3 digest of plan and texts, in hexadecimal digits.
     pub digest: String,
-    /// Whether it came with the program.
+    /// Whether it is bundled with the program.
     pub shipped: bool,
     plan_text: String,
     texts: String,
@@ -41,7 +41,7 @@ impl Lesson {
     /// Reads a lesson by name; the file in the configuration folder takes precedence over the bundled one.
     ///
     /// # Errors
-    /// There is none of this name, or one of its files is wrong.
+    /// The lesson does not exist, or one of its files is invalid.
     pub fn named(name: &str, configuration: &Configuration) -> Result<Lesson, RunError> {
         if let Some(plan) = configuration.file(format!("lessons/{name}.toml"))? {
             let texts =
@@ -60,10 +60,10 @@ impl Lesson {
         Ok(Lesson::read(name, plan, texts, true)?)
     }
 
-    /// Reads a lesson from the text of its plan, and its texts.
+    /// Parses a lesson from its plan and its texts.
     ///
     /// # Errors
-    /// The first thing that is wrong, with file, line and key.
+    /// The first defect, with file, line and key.
     pub(super) fn read(
         name: &str,
         plan: ParameterSource,
@@ -95,10 +95,10 @@ impl Lesson {
         }
     }
 
-    /// Reads a lesson from its file; its texts lie beside it.
+    /// Reads a lesson from its plan file and the `.md` file next to it.
     ///
     /// # Errors
-    /// A file cannot be read, or is wrong.
+    /// A file cannot be read, or is invalid.
     pub fn of_file(path: &Path) -> Result<Lesson, RunError> {
         let text = std::fs::read_to_string(path).map_err(RunError::io(path))?;
         let texts = std::fs::read_to_string(path.with_extension("md")).unwrap_or_default();
@@ -106,10 +106,10 @@ impl Lesson {
         Ok(Lesson::read(&name, ParameterSource { name: path.display().to_string(), text }, texts, false)?)
     }
 
-    /// Reads the lesson that is kept with a run.
+    /// Reads the lesson from a run folder.
     ///
     /// # Errors
-    /// A file is missing or wrong.
+    /// A file is missing or invalid.
     pub fn of_run(folder: &Path, name: &str) -> Result<Lesson, RunError> {
         let text = |file| {
             let path = folder.join(file);
@@ -120,23 +120,23 @@ impl Lesson {
         Ok(Lesson::read(name, source, text(TEXTS_FILE)?, false)?)
     }
 
-    /// The lesson as its plan and its texts say, handed over without files.
+    /// Parses a lesson from texts that are not in files.
     ///
     /// # Errors
-    /// The first thing that is wrong, with line and key.
+    /// The first defect, with line and key.
     pub fn of_texts(name: &str, plan: ParameterSource, texts: String) -> Result<Lesson, RunError> {
         Ok(Lesson::read(name, plan, texts, false)?)
     }
 
-    /// Its plan and its texts, as they were written.
+    /// Returns the source texts of plan and texts.
     pub fn sources(&self) -> (&str, &str) {
         (&self.plan_text, &self.texts)
     }
 
-    /// Writes its two files, to be changed: the plan at a path, the texts beside it. Nothing is replaced.
+    /// Writes an editable copy: the plan at a path, the texts next to it. Never replaces a file.
     ///
     /// # Errors
-    /// One of them is there already, or cannot be written.
+    /// One of the files exists, or cannot be written.
     pub fn copy_to(&self, path: &Path) -> Result<(), RunError> {
         use std::io::Write;
         if let Some(folder) = path.parent() {
@@ -150,7 +150,7 @@ impl Lesson {
         written(&path.with_extension("md"), &self.texts)
     }
 
-    /// Keeps it with a run, so that the run can be judged wherever it goes.
+    /// Writes the lesson to a run folder, so that the run can be judged on any machine.
     ///
     /// # Errors
     /// The folder cannot be written.
@@ -159,7 +159,7 @@ impl Lesson {
         write_whole(&folder.join(TEXTS_FILE), self.texts.as_bytes())
     }
 
-    /// The lesson in the world in which a figure is measured: its part with the figure's scenario and parameters.
+    /// Returns the lesson with the scenario and parameters of a measured figure in the figure's part.
     pub fn in_world_of(self: &Arc<Lesson>, figure: &MeasuredFigure) -> Arc<Lesson> {
         if figure.scenario.is_none() && figure.parameters.is_empty() {
             return self.clone();
@@ -174,7 +174,7 @@ impl Lesson {
         Arc::new(other)
     }
 
-    /// Whether a goal, a guess or a pitfall is measured by a statement.
+    /// Returns whether a goal, guess or pitfall is measured by an SQL statement.
     pub fn asks_database(&self) -> bool {
         let steps = self.plan.parts.iter().flat_map(|part| &part.steps);
         let goals = steps.clone().flat_map(|step| step.goals.iter().map(|goal| &goal.measurement));
@@ -186,7 +186,7 @@ impl Lesson {
         goals.chain(guesses).chain(pitfalls).any(|own| own.needs_database())
     }
 
-    /// A text with the measured figures that it names.
+    /// Replaces the names of measured figures in a text by their values.
     pub fn filled(&self, text: &str) -> String {
         let written =
             |text: String, own: &MeasuredFigure| text.replace(&format!("{{{}}}", own.name), &own.written());
@@ -195,12 +195,12 @@ impl Lesson {
 }
 
 impl MeasuredFigure {
-    /// Its value as texts write it.
+    /// Returns the formatted value.
     pub fn written(&self) -> String {
         self.write(self.value)
     }
 
-    /// A value of this figure as texts write it.
+    /// Formats a value of this figure.
     pub fn write(&self, value: f64) -> String {
         match &self.measurement.source {
             NumberSource::Cash => short_dollars(value),
@@ -218,7 +218,6 @@ impl MeasuredFigure {
     }
 }
 
-/// The text below a heading of the second level.
 fn section(texts: &str, heading: &str) -> String {
     let mut lines =
         texts.lines().skip_while(|line| line.trim() != format!("## {heading}")).skip(1).peekable();

@@ -1,42 +1,41 @@
-//! What goals, guesses and pitfalls measure: a figure of weeks, or what a statement answers.
+//! Measurements of goals, guesses and pitfalls: a figure of weeks, or the result of an SQL statement.
 
 use serde::Deserialize;
 
 use crate::figures::{FigureUnit, WeekFigure, WeekFigures};
 
-/// What is measured over some weeks.
+/// A measurement over weeks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measurement {
-    /// Where a number comes from.
+    /// Source of the numbers.
     pub source: NumberSource,
-    /// What is made of the numbers of several weeks.
+    /// Aggregation over the weeks.
     pub over: Over,
 }
 
-/// Where a number comes from.
+/// Source of a number.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NumberSource {
     /// Cash at the end of a week, dollars.
     Cash,
     /// A figure of a week.
     Figure(WeekFigure),
-    /// A statement that answers with one number; `{from_day}` and `{to_day}` stand for the days of the weeks.
+    /// A statement that returns one number; `{from_day}` and `{to_day}` stand for the days of the weeks.
     Sql(String),
 }
 
-/// What is made of the numbers of several weeks.
+/// Aggregation over weeks.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Over {
-    /// The last counts.
+    /// Last value.
     #[default]
     End,
-    /// They are added.
+    /// Sum.
     Sum,
-    /// Their mean counts.
+    /// Mean.
     Mean,
 }
 
-/// A measurement as files write it.
 #[derive(Debug, Deserialize)]
 pub(super) struct MeasurementFile {
     pub figure: Option<String>,
@@ -51,31 +50,30 @@ impl TryFrom<MeasurementFile> for Measurement {
         let source = match (file.figure.as_deref(), file.sql) {
             (Some("cash"), None) => NumberSource::Cash,
             (Some(name), None) => {
-                let figure =
-                    WeekFigure::named(name).ok_or_else(|| format!("there is no figure {name} of a week"))?;
+                let figure = WeekFigure::named(name).ok_or_else(|| format!("there is no figure {name}"))?;
                 if figure.of_week(&WeekFigures::default()).is_none() {
                     return Err(format!("{name} is not measured in lessons; use sql"));
                 }
                 NumberSource::Figure(figure)
             }
             (None, Some(sql)) => NumberSource::Sql(sql),
-            _ => return Err("what is measured is one of figure and sql".to_owned()),
+            _ => return Err("a measurement needs either figure or sql".to_owned()),
         };
         let over = match file.over.as_deref() {
             None | Some("end") => Over::End,
             Some("sum") => Over::Sum,
             Some("mean") => Over::Mean,
-            Some(other) => return Err(format!("over is end, sum or mean, not {other}")),
+            Some(other) => return Err(format!("over must be end, sum or mean, not {other}")),
         };
         if over != Over::End && matches!(source, NumberSource::Sql(_)) {
-            return Err("a statement says itself over which days it counts: leave over out".to_owned());
+            return Err("remove over: an SQL statement selects its days itself".to_owned());
         }
         Ok(Measurement { source, over })
     }
 }
 
 impl Measurement {
-    /// Whether it is a figure that counts dollars.
+    /// Returns whether it is a figure in dollars.
     pub fn counts_dollars(&self) -> bool {
         match &self.source {
             NumberSource::Cash => true,
@@ -84,7 +82,7 @@ impl Measurement {
         }
     }
 
-    /// The statement that measures the days from `from_day` to `to_day`; `None` if it is a figure.
+    /// Returns the statement for the days from `from_day` to `to_day`, or `None` for a figure.
     pub fn statement(&self, from_day: u32, to_day: u32) -> Option<String> {
         match &self.source {
             NumberSource::Sql(sql) => Some(filled(sql, from_day, to_day)),
@@ -92,7 +90,7 @@ impl Measurement {
         }
     }
 
-    /// The value of a figure over some weeks; `None` if no week has it, and of a statement.
+    /// Returns the value of a figure over weeks, or `None` if no week has it or the source is a statement.
     pub fn of_weeks<'a>(&self, weeks: impl Iterator<Item = &'a WeekFigures>) -> Option<f64> {
         let value = |week: &WeekFigures| match &self.source {
             NumberSource::Cash => Some(week.cash),
@@ -108,7 +106,7 @@ impl Measurement {
         }
     }
 
-    /// Whether it asks the database.
+    /// Returns whether the source is a statement.
     pub fn needs_database(&self) -> bool {
         matches!(self.source, NumberSource::Sql(_))
     }

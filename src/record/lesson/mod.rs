@@ -1,7 +1,7 @@
-//! Lessons: what an instructor defines, and where a student stands by the record (docs/lessons/authors-guide.md).
+//! Lessons: their definition, and the recorded progress of a student (docs/lessons/authors-guide.md).
 //!
 //! A lesson has parts. Each part is a separate company that is recorded as a run. A part has steps of some weeks, with a
-//! question before they run, goals, and hints. What a student did is recorded in lines of kind `lesson`.
+//! question before they are simulated, goals, and hints. Lines of kind `lesson` record the progress of a student.
 
 mod definition;
 mod lesson_call;

@@ -1,4 +1,5 @@
-//! Whether a lesson is over: hidden state of its runs stays hidden until then, for the next part may have the same luck.
+//! Whether a lesson is over. Hidden state of its runs stays hidden until then, because the next part can have the same
+//! random draws.
 
 use std::path::Path;
 
@@ -9,8 +10,8 @@ use crate::folder::runs::last_lines;
 use crate::stamp::LessonStamp;
 use crate::trajectory::Record;
 
-/// Whether the last part of the lesson that a run belongs to is over: in this run, or in another one that the same person has
-/// in the folder of runs. True of runs that belong to no lesson; false where the lesson that is kept with the run is another.
+/// Returns whether the last part of a run's lesson is over, in this run or in another run of the participant in the same
+/// folder. Returns true for runs without a lesson, and false if the lesson in the run folder has another digest.
 pub fn is_lesson_over(folder: Option<&Path>, manifest: &Manifest) -> bool {
     let Some(stamp) = &manifest.lesson else { return true };
     let Some(folder) = folder else { return false };
@@ -27,7 +28,7 @@ pub fn is_lesson_over(folder: Option<&Path>, manifest: &Manifest) -> bool {
     others.any(|own| Derived::of(&own).is_ok_and(|derived| is_last(&derived.manifest)) && has_ended(&own))
 }
 
-/// Whether the last lines of a run say that it is over.
+/// Returns whether the last lines of a run have an `end`.
 fn has_ended(folder: &Path) -> bool {
     let lines = last_lines(&folder.join("trajectory.jsonl")).unwrap_or_default();
     lines.iter().any(|line| matches!(line.record, Record::End(_)))

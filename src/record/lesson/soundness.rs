@@ -1,4 +1,4 @@
-//! Whether a lesson contradicts itself.
+//! Consistency checks of a lesson.
 
 use std::collections::BTreeSet;
 
@@ -6,20 +6,24 @@ use super::definition::{LessonPart, MeasuredFigure, ReferencePlay, ScheduledCall
 use super::lesson_file::Lesson;
 use crate::folder::configuration::Configuration;
 
-/// What is wrong with a lesson.
+/// A defect of a lesson.
 pub(super) struct Unsound {
-    /// Something that stands in the line at fault.
+    /// Text in the line at fault.
     pub place: String,
     pub key: &'static str,
     pub problem: String,
 }
 
-/// The first thing that is wrong with a lesson whose parts could be read.
+/// Returns the first inconsistency of a parsed lesson.
 pub(super) fn unsound(lesson: &Lesson) -> Option<Unsound> {
     let plan = &lesson.plan;
     let wrong = |place: &str, key, problem: String| Unsound { place: place.to_owned(), key, problem };
     if plan.parts.is_empty() || plan.parts.iter().any(|part| part.steps.is_empty()) {
-        return Some(wrong("[[part", "part", "a lesson has a part, and every part has a step".to_owned()));
+        return Some(wrong(
+            "[[part",
+            "part",
+            "a lesson needs a part, and every part needs a step".to_owned(),
+        ));
     }
     plan.parts
         .iter()
@@ -32,7 +36,7 @@ pub(super) fn unsound(lesson: &Lesson) -> Option<Unsound> {
                 false => Some(wrong(
                     "[bad]",
                     "bad.pitfall",
-                    "the bad play names the pitfall that it meets".to_owned(),
+                    "the bad play must name the pitfall that it triggers".to_owned(),
                 )),
             }
         })
@@ -58,17 +62,20 @@ fn unsound_part(part: &LessonPart) -> Option<Unsound> {
     };
     for step in &part.steps {
         if step.weeks == 0 {
-            return step_of(&step.title, "step.weeks", "a step takes a week at least");
+            return step_of(&step.title, "step.weeks", "a step needs at least one week");
         }
         if !(1..=3).contains(&step.hints.len()) {
-            return step_of(&step.title, "step.hints", "a step has one to three hints");
+            return step_of(&step.title, "step.hints", "a step needs one to three hints");
         }
     }
     let early = part.start.iter().find(|own| own.week > part.start_weeks)?;
     Some(Unsound {
         place: format!("week = {}", early.week),
         key: "start.week",
-        problem: format!("the start has {} weeks; later calls are the student's", part.start_weeks),
+        problem: format!(
+            "the start has {} weeks; calls in later weeks belong to the student",
+            part.start_weeks
+        ),
     })
 }
 
@@ -93,7 +100,7 @@ fn unsound_measured(lesson: &Lesson) -> Option<Unsound> {
     for own in &lesson.plan.measured {
         let part = lesson.plan.parts.get(own.part);
         let problem = match part {
-            _ if !names.insert(&own.name) => "the name stands for another figure already".to_owned(),
+            _ if !names.insert(&own.name) => "another figure has this name".to_owned(),
             None => format!("there are {} parts", lesson.plan.parts.len()),
             Some(part) if own.week.is_some_and(|week| !(1..=part.weeks()).contains(&week)) => {
                 format!("the part has weeks 1 to {}", part.weeks())
@@ -108,7 +115,7 @@ fn unsound_measured(lesson: &Lesson) -> Option<Unsound> {
     None
 }
 
-/// What is wrong with the world of its own in which a figure is measured.
+/// Returns the error of a figure's own scenario and parameters.
 fn unsound_world(part: &LessonPart, own: &MeasuredFigure) -> Option<String> {
     if own.scenario.is_none() && own.parameters.is_empty() {
         return None;
@@ -123,7 +130,7 @@ fn unsound_world(part: &LessonPart, own: &MeasuredFigure) -> Option<String> {
         .map(|error| error.to_string())
 }
 
-/// Names in braces that stand for no measured figure.
+/// Returns the first name in braces without a measured figure.
 fn unknown_name(lesson: &Lesson) -> Option<Unsound> {
     let steps = lesson.plan.parts.iter().flat_map(|part| &part.steps);
     let texts = steps.flat_map(|step| step.hints.iter().chain([&step.text]));
@@ -137,7 +144,7 @@ fn unknown_name(lesson: &Lesson) -> Option<Unsound> {
             return Some(Unsound {
                 place: format!("{{{name}}}"),
                 key: "measured",
-                problem: format!("a text names {{{name}}}, which is no measured figure"),
+                problem: format!("a text names {{{name}}}, which is not a measured figure"),
             });
         }
     }

@@ -1,4 +1,4 @@
-//! Where a student stands in a lesson: what follows from its plan, the days that passed, and the lines of the record.
+//! The progress of a student in a lesson, derived from its plan and the recorded lines.
 
 use std::sync::Arc;
 
@@ -8,46 +8,46 @@ use crate::trajectory::record::{Activity, LessonEvent, LessonNote};
 use crate::trajectory::{Line, Record};
 use novamind_tools::{Refusal, ToolId};
 
-/// A lesson that is played, and what happened in it.
+/// A lesson in play, with its recorded events.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LessonStanding {
     /// The lesson.
     pub lesson: Arc<Lesson>,
-    /// The part that this run is, counted from 0.
+    /// Part of this run, from 0.
     pub part: usize,
-    /// Whether goals and pitfalls are looked at.
+    /// Whether goals and pitfalls are judged.
     pub is_judged: bool,
-    /// What happened, in order, each with its day.
+    /// Events in order, each with its day.
     pub notes: Vec<(u32, LessonNote)>,
 }
 
 impl LessonPart {
-    /// Whether it begins with an empty company, in a world in which nothing is set on the way.
+    /// Returns whether the part starts with an empty company and no step sets parameters.
     pub fn begins_empty(&self) -> bool {
         let is_set = |step: &LessonStep| !step.parameters.is_empty();
         self.start_weeks == 0 && self.start.is_empty() && !self.steps.iter().any(is_set)
     }
 
-    /// Weeks from the first day of the company to the end of the last step.
+    /// Returns the weeks from the first day of the company to the end of the last step.
     pub fn weeks(&self) -> u32 {
         self.start_weeks + self.steps.iter().map(|step| step.weeks).sum::<u32>()
     }
 
-    /// Weeks that have passed when a step begins, and when it is over; steps are counted from 0.
+    /// Returns the weeks that have passed at the start and at the end of a step, from 0.
     pub fn weeks_of(&self, step: usize) -> (u32, u32) {
         let before: u32 = self.steps.iter().take(step).map(|own| own.weeks).sum();
         let begin = self.start_weeks + before;
         (begin, begin + self.steps.get(step).map_or(0, |own| own.weeks))
     }
 
-    /// The step that holds the week after so many; none once all are over.
+    /// Returns the step of the week after `weeks` weeks, or `None` if all steps are over.
     pub fn step_after(&self, weeks: u32) -> Option<usize> {
         (0..self.steps.len()).find(|step| weeks < self.weeks_of(*step).1)
     }
 }
 
 impl LessonStanding {
-    /// A lesson whose record says this.
+    /// Reads the progress from the lines of a run.
     pub fn of<'a>(
         lesson: Arc<Lesson>,
         part: usize,
@@ -60,27 +60,27 @@ impl LessonStanding {
         LessonStanding { lesson, part, is_judged: true, notes: lines.into_iter().filter_map(noted).collect() }
     }
 
-    /// The part that this run is.
+    /// Returns the part of this run.
     pub fn own_part(&self) -> &LessonPart {
         &self.lesson.plan.parts[self.part]
     }
 
-    /// What of the program the student has.
+    /// Returns the parts of the program that the student can use.
     pub fn access(&self) -> &LessonAccess {
         &self.lesson.plan.access
     }
 
-    /// A step of it, counted from 0.
+    /// Returns a step of the part, from 0.
     pub fn step(&self, step: usize) -> Option<&LessonStep> {
         self.own_part().steps.get(step)
     }
 
-    /// Whether the student has a tool.
+    /// Returns whether the student can use a tool.
     pub fn has_tool(&self, tool: ToolId) -> bool {
         self.refuse_tool(tool).is_ok()
     }
 
-    /// Refuses a tool that the lesson does not have.
+    /// Rejects a tool that the lesson does not offer.
     ///
     /// # Errors
     /// `not_in_this_lesson`.
@@ -99,7 +99,7 @@ impl LessonStanding {
         }
     }
 
-    /// Refuses to go on after so many weeks while the question of the step is open.
+    /// Rejects the week after `weeks` weeks while the question of its step is unanswered.
     ///
     /// # Errors
     /// `guess_first`.
@@ -112,48 +112,48 @@ impl LessonStanding {
         }
     }
 
-    /// The newest try of a step.
+    /// Returns the number of the latest attempt at a step.
     pub fn tries(&self, step: usize) -> u32 {
         let of_try = |note: &LessonNote| note.number;
         self.last(LessonEvent::Begun, step).and_then(of_try).unwrap_or(0)
     }
 
-    /// Whether a step has begun.
+    /// Returns whether a step has started.
     pub fn has_begun(&self, step: usize) -> bool {
         self.last(LessonEvent::Begun, step).is_some()
     }
 
-    /// The last step that has begun; the first if none has.
+    /// Returns the last step that has started, or the first one.
     pub fn last_begun(&self) -> usize {
         (0..self.own_part().steps.len()).rev().find(|step| self.has_begun(*step)).unwrap_or(0)
     }
 
-    /// What was guessed in a step; of choices the number of the one taken, counted from 1.
+    /// Returns the guess of a step; for choices the number of the choice, from 1.
     pub fn guess(&self, step: usize) -> Option<f64> {
         self.last(LessonEvent::Guess, step)?.value
     }
 
-    /// What came of what was to be guessed in a step, and whether the guess was right where it was a choice.
+    /// Returns the outcome of a guess, and for choices whether the guess was correct.
     pub fn outcome(&self, step: usize) -> Option<&LessonNote> {
         self.last(LessonEvent::Outcome, step)
     }
 
-    /// Whether a step asks for a guess that is not there yet.
+    /// Returns whether the guess of a step is missing.
     pub fn awaits_guess(&self, step: usize) -> bool {
         self.step(step).is_some_and(|own| own.guess.is_some()) && self.guess(step).is_none()
     }
 
-    /// How many hints of a step were asked for.
+    /// Returns how many hints of a step were requested.
     pub fn hints(&self, step: usize) -> usize {
         self.notes_of(LessonEvent::Hint, step).count()
     }
 
-    /// What the goals of a step came to, in their order; empty before it is over.
+    /// Returns the results of the goals of a step, in order; empty before the step is over.
     pub fn goals(&self, step: usize) -> Vec<&LessonNote> {
         self.notes_of(LessonEvent::Goal, step).collect()
     }
 
-    /// Whether every goal of every step was reached.
+    /// Returns whether every goal of every step was reached.
     pub fn has_reached_all(&self) -> bool {
         let wanted: usize = self.own_part().steps.iter().map(|step| step.goals.len()).sum();
         let reached =
@@ -161,13 +161,13 @@ impl LessonStanding {
         self.notes.iter().filter(reached).count() == wanted
     }
 
-    /// Names of the pitfalls that were met, in their order.
+    /// Returns the names of the triggered pitfalls, in order.
     pub fn pitfalls(&self) -> Vec<&str> {
         let met = self.notes.iter().filter(|(_, note)| note.event == LessonEvent::Pitfall);
         met.filter_map(|(_, note)| note.name.as_deref()).collect()
     }
 
-    /// The choices of a guess, if it is one.
+    /// Returns the choices of a guess, or `None` for other questions.
     pub fn choices(&self, step: usize) -> Option<&[String]> {
         match &self.step(step)?.guess.as_ref()?.form {
             GuessForm::Choice { choices, .. } => Some(choices),

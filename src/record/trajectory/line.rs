@@ -1,4 +1,4 @@
-//! A line: its frame, the sum at its end, and what it says.
+//! Lines of a trajectory: frame, event and sum.
 
 use std::borrow::Cow;
 use std::io::{BufRead, BufReader};
@@ -13,20 +13,20 @@ use crate::files::open_regular_file;
 use crate::trajectory::DOES_NOT_FOLLOW;
 use novamind_database::Position;
 
-/// A line that was read back.
+/// A parsed line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
     /// Number, from 0.
     pub seq: u64,
     /// Day of the run.
     pub day: u32,
-    /// When it was written, RFC 3339.
+    /// Moment of writing, RFC 3339.
     pub at: String,
-    /// What it says.
+    /// Event.
     pub record: Record,
     /// Hash of the line.
     pub hash: String,
-    /// As it stands in the file.
+    /// Bytes in the file.
     text: Box<[u8]>,
 }
 
@@ -44,17 +44,16 @@ struct Frame<'a> {
     line_sums: bool,
 }
 
-/// Names of the fields around what a line says.
 const FRAME: [&str; 6] = ["seq", "kind", "day", "at", "prev", "sum"];
 
 impl Line {
-    /// Reads a line. Those of the first builds have no sums; of a first line only it itself tells whether it has one.
+    /// Parses and checks a line. Lines of the first builds have no sums; a first line declares itself whether it has one.
     pub(super) fn read(text: &[u8], seq: u64, previous: &str, summed: bool) -> Result<Line, String> {
         let unreadable = |error: serde_json::Error| format!("this is not a line of a trajectory ({error})");
         let frame: Frame<'_> = serde_json::from_slice(text).map_err(unreadable)?;
         let summed = summed && (seq > 0 || frame.line_sums);
         if sum_of(text).map_or(summed, |fits| !fits) {
-            return Err("the line does not match its own sum: it was changed".to_owned());
+            return Err("the line does not match its sum: it was changed".to_owned());
         }
         if frame.seq != Some(seq) {
             return Err(format!("the line should have number {seq}: lines are missing or out of order"));
@@ -63,19 +62,19 @@ impl Line {
             return Err(DOES_NOT_FOLLOW.to_owned());
         }
         let (Some(kind), Some(at), Some(day)) = (frame.kind, frame.at, frame.day) else {
-            return Err("the line lacks its kind, its moment or its day".to_owned());
+            return Err("the line has no kind, moment or day".to_owned());
         };
         let record =
             Record::read(&kind, text).map_err(|error| format!("the {kind} cannot be read ({error})"))?;
         Ok(Line { seq, day, at, record, hash: line_hash(text), text: text.into() })
     }
 
-    /// Reads the first line of a file; none if it is not whole.
+    /// Parses the first line of a file. Returns `None` if it is invalid.
     pub fn first(text: &[u8]) -> Option<Line> {
         Line::read(text, 0, &line_hash(b""), true).ok()
     }
 
-    /// Reads a line whose place in its file does not matter, and whose sum nobody asks for; none if it cannot be read.
+    /// Parses a line without checking its position and sum. Returns `None` if it cannot be parsed.
     pub fn unchecked(text: &[u8]) -> Option<Line> {
         let frame: Frame<'_> = serde_json::from_slice(text).ok()?;
         let (seq, day, at) = (frame.seq.unwrap_or(0), frame.day?, frame.at.unwrap_or_default());
@@ -83,39 +82,39 @@ impl Line {
         Some(Line { seq, day, at, record, hash: line_hash(text), text: text.into() })
     }
 
-    /// Number and hash.
+    /// Returns number and hash.
     pub fn position(&self) -> Position {
         Position { seq: self.seq, line_hash: self.hash.clone() }
     }
 
-    /// Whether it closes days that ran: a week, or single steps.
+    /// Returns whether the line closes simulated days: a week or single steps.
     pub fn closes_days(&self) -> bool {
         self.record.closing().is_some()
     }
 
-    /// Whether it says that every line of the run ends with a sum.
+    /// Returns whether the line declares that every line of the run has a sum.
     pub fn promises_sums(&self) -> bool {
         matches!(&self.record, Record::Start(start) if start.line_sums)
     }
 
-    /// When it was written, seconds since 1970; 0 if that cannot be read.
+    /// Returns the moment of writing in seconds since 1970, or 0 if it cannot be parsed.
     pub fn moment(&self) -> f64 {
         seconds(&self.at)
     }
 
-    /// When it was written, nanoseconds since 1970; 0 if that cannot be read.
+    /// Returns the moment of writing in nanoseconds since 1970, or 0 if it cannot be parsed.
     pub fn nanoseconds(&self) -> i64 {
         nanoseconds(&self.at)
     }
 
-    /// Every field of what it says, those that this version does not know included.
+    /// Returns the fields of the event, including fields that this version does not know.
     pub fn own_fields(&self) -> Map<String, Value> {
         let mut fields: Map<String, Value> = serde_json::from_slice(&self.text).unwrap_or_default();
         fields.retain(|name, _| !FRAME.contains(&name.as_str()));
         fields
     }
 
-    /// A line that stands in no file.
+    /// Returns a line that is not in a file.
     #[cfg(any(test, feature = "test-kit"))]
     pub fn alone(seq: u64, day: u32, at: &str, record: Record) -> Line {
         let text = Value::Object(record.fields()).to_string().into_bytes();
@@ -123,24 +122,22 @@ impl Line {
     }
 }
 
-/// Hash of a line's bytes, in hexadecimal digits.
+/// Returns the hash of a line's bytes, in hexadecimal digits.
 pub(super) fn line_hash(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_hex().to_string()
 }
 
-/// Hash of the first line of a file; none if it cannot be read or has no whole line.
+/// Returns the hash of the first line of a file, or `None` if it cannot be read or has no complete line.
 pub fn hash_of_first_line(path: &Path) -> Option<String> {
     let mut line = Vec::new();
     BufReader::new(open_regular_file(path).ok()?).read_until(b'\n', &mut line).ok()?;
     line.pop_if(|last| *last == b'\n').map(|_| line_hash(&line))
 }
 
-/// What stands before the sum of a line.
 const SUM: &[u8] = b",\"sum\":\"";
-/// Hexadecimal digits of a sum.
 const SUM_DIGITS: usize = 16;
 
-/// A line with the sum of its own bytes as its last field.
+/// Appends the sum of a line's bytes as its last field.
 pub(super) fn with_sum(mut line: Vec<u8>) -> Vec<u8> {
     let sum = line_hash(&line);
     line.pop();
@@ -150,7 +147,7 @@ pub(super) fn with_sum(mut line: Vec<u8>) -> Vec<u8> {
     line
 }
 
-/// Whether a line ends with a sum, and with the right one.
+/// Returns `None` if a line has no sum, otherwise whether the sum is correct.
 fn sum_of(line: &[u8]) -> Option<bool> {
     let (own, tail) = line.split_at_checked(line.len().checked_sub(SUM.len() + SUM_DIGITS + 2)?)?;
     let sum = tail.strip_prefix(SUM)?.strip_suffix(b"\"}")?;

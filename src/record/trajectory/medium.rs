@@ -1,32 +1,32 @@
-//! What the lines of a trajectory are written to.
+//! The storage of a trajectory.
 
 use std::fs::{File, Metadata};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
-/// Where lines end up: a file, or in tests one with a page cache that can fail.
+/// Storage of lines: a file, or in tests a file with a simulated page cache.
 pub trait Medium: Send {
     /// Appends bytes.
     fn append(&mut self, bytes: &[u8]) -> io::Result<()>;
-    /// Makes everything appended survive a power cut. After an error, whatever was appended since the last successful sync
-    /// may be lost, and a later success proves nothing about it: the kernel may have marked the pages clean.
+    /// Syncs the appended bytes to the disk. After an error, bytes since the last successful sync may be lost, and a later
+    /// success does not cover them: the kernel may have marked the pages clean.
     fn sync(&self) -> io::Result<()>;
-    /// Forgets everything after so many bytes.
+    /// Truncates to a length in bytes.
     fn cut(&mut self, length: u64) -> io::Result<()>;
-    /// Whether it is still the file at a path, with the length at which it was left, if that is known.
+    /// Returns whether this is still the file at a path, with the expected length if it is known.
     fn is_ours(&self, path: &Path, length: Option<u64>) -> bool;
-    /// What its first bytes are, wherever it has gone.
+    /// Returns the first bytes, even if the file was moved.
     fn beginning(&mut self, length: u64) -> io::Result<Vec<u8>>;
 }
 
-/// A file, and how many names it had when it was opened.
+/// A file with the number of its hard links when it was opened.
 pub(super) struct NamedFile {
     file: File,
     names: u64,
 }
 
 impl NamedFile {
-    /// An open file, for reading and writing.
+    /// Wraps an open file.
     pub(super) fn of(file: File) -> io::Result<NamedFile> {
         let names = names_of(&file.metadata()?);
         Ok(NamedFile { file, names })
@@ -63,7 +63,7 @@ impl Medium for NamedFile {
     }
 }
 
-/// Hard links of a file: another one is another way to change it.
+/// Returns the number of hard links: a new link is another way to change the file.
 #[cfg(unix)]
 fn names_of(file: &Metadata) -> u64 {
     use std::os::unix::fs::MetadataExt;
@@ -81,7 +81,7 @@ fn is_same(one: &Metadata, other: &Metadata) -> bool {
     (one.dev(), one.ino()) == (other.dev(), other.ino())
 }
 
-/// Elsewhere a file that is open can neither be moved nor removed.
+/// On other systems an open file can neither be moved nor removed.
 #[cfg(not(unix))]
 fn is_same(one: &Metadata, other: &Metadata) -> bool {
     one.len() == other.len()

@@ -1,8 +1,7 @@
-//! `trajectory.jsonl`: the truth of a run, one line per action (docs/formats/trajectory.md).
+//! The trajectory of a run, `trajectory.jsonl`: one line per event (docs/formats/trajectory.md).
 //!
-//! Lines are appended and never changed. Each names the hash of the one before and ends with a sum of its own, so
-//! what is cut, flipped or inserted shows, in the last line too. A line whose last byte is missing was never
-//! confirmed and is dropped.
+//! Lines are appended and never changed. Each has the hash of the previous line and ends with its own sum, which reveals
+//! cut, changed and inserted bytes in every line. A line without its line feed was never confirmed and is dropped.
 
 mod line;
 mod medium;
@@ -29,21 +28,21 @@ use line::line_hash;
 use novamind_database::Position;
 use record::Via;
 
-/// What the rationale of a policy's week says before the policy's name.
+/// Prefix of the rationale of a policy's week; the name of the policy follows.
 const BEFORE_NAME: &str = "policy ";
 
-/// The line that says how a run ended, among its lines; none while it is unfinished.
+/// Returns the `end` among lines, or `None` for an unfinished run.
 pub fn end_of(lines: &[Line]) -> Option<&Line> {
     lines.iter().rev().find(|line| matches!(line.record, Record::End(_)))
 }
 
-/// The rationale of a week that the policy of a name decides.
+/// Returns the rationale of a week that a policy decides.
 pub fn policy_rationale(name: &str) -> String {
     format!("{BEFORE_NAME}{name}")
 }
 
-/// The policy that decided every week among some lines, by their rationales; none where somebody else decided one, and without
-/// weeks.
+/// Returns the policy that decided all weeks among lines, according to their rationales, or `None` without such a policy or
+/// without weeks.
 pub fn policy_of(lines: &[Line]) -> Option<&str> {
     let mut weeks = lines.iter().filter_map(|line| match &line.record {
         Record::Advance(week) => Some(week),
@@ -55,81 +54,81 @@ pub fn policy_of(lines: &[Line]) -> Option<&str> {
     first.rationale.strip_prefix(BEFORE_NAME).filter(|_| is_one)
 }
 
-/// A trajectory that was read.
+/// A parsed trajectory.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Trajectory {
-    /// Its lines.
+    /// Lines.
     pub lines: Vec<Line>,
-    /// Bytes of the file that hold them.
+    /// Length of the lines in the file, in bytes.
     pub length: u64,
-    /// Bytes after the last complete line: a line that was never confirmed.
+    /// Bytes after the last complete line, which were never confirmed.
     pub unfinished: usize,
-    /// The line that its first one goes on from, of a file that goes on from another.
+    /// Position that the first line continues, if the file continues another one.
     goes_on_from: Option<Position>,
 }
 
 impl Trajectory {
-    /// Reads and checks a file: every line is JSON, numbered, and names the hash of the one before.
+    /// Reads and checks a file: every line must be valid JSON with the correct number and the hash of the previous line.
     ///
     /// # Errors
-    /// The file cannot be read, or a line is damaged; the error names it and says what is still good.
+    /// The file cannot be read, or a line is damaged; the error names the line and the valid lines before it.
     pub fn read(path: &Path) -> Result<Trajectory, RunError> {
         Trajectory::of_file(path, &read_regular_file(path).map_err(RunError::io(path))?)
     }
 
-    /// The line that says how the run ended; none while it is unfinished. In runs of format 1 others can follow it.
+    /// Returns the `end`, or `None` for an unfinished run. In format 1, lines can follow it.
     pub fn end(&self) -> Option<&Line> {
         end_of(&self.lines)
     }
 
-    /// Checks the bytes of a file as [`Trajectory::read`] does.
+    /// Parses the bytes of a file as [`Trajectory::read`] does.
     ///
     /// # Errors
-    /// A line is damaged; the error names it and says what is still good.
+    /// A line is damaged; the error names the line and the valid lines before it.
     pub fn of_file(path: &Path, bytes: &[u8]) -> Result<Trajectory, RunError> {
         Trajectory::parse(bytes).map_err(damaged_at(path))
     }
 
-    /// Checks bytes as [`Trajectory::read`] does.
+    /// Parses bytes as [`Trajectory::read`] does.
     ///
     /// # Errors
-    /// (line, problem), lines from 1.
+    /// Line number from 1, and the problem.
     pub fn parse(bytes: &[u8]) -> Result<Trajectory, (usize, String)> {
         let mut trajectory = Trajectory::default();
         trajectory.extend(bytes).map(|()| trajectory)
     }
 
-    /// Checks the bytes of a file whose lines go on from the last of another.
+    /// Parses the bytes of a file that continues another one.
     ///
     /// # Errors
-    /// A line is damaged; the error names it and says what is still good.
+    /// A line is damaged; the error names the line and the valid lines before it.
     pub fn of_file_after(path: &Path, last: Position, bytes: &[u8]) -> Result<Trajectory, RunError> {
         let mut trajectory = Trajectory { goes_on_from: Some(last), ..Trajectory::default() };
         trajectory.extend(bytes).map_err(damaged_at(path))?;
         Ok(trajectory)
     }
 
-    /// Number of the line that follows.
+    /// Returns the number of the next line.
     pub fn next_seq(&self) -> u64 {
         self.goes_on_from.as_ref().map_or(0, |last| last.seq + 1) + self.lines.len() as u64
     }
 
-    /// What the line that follows has to name.
+    /// Returns the hash that the next line must have as `prev`.
     pub fn last_hash(&self) -> String {
         let before =
             || self.goes_on_from.as_ref().map_or_else(|| line_hash(b""), |last| last.line_hash.clone());
         self.lines.last().map_or_else(before, |line| line.hash.clone())
     }
 
-    /// Whether every line ends with a sum. Before the first line is read nobody knows.
+    /// Returns whether every line has a sum; true before the first line.
     fn has_sums(&self) -> bool {
         self.goes_on_from.is_some() || self.lines.first().is_none_or(Line::promises_sums)
     }
 
-    /// Takes what follows in the file after the lines that are known.
+    /// Parses further bytes of the file.
     ///
     /// # Errors
-    /// (line, problem), lines from 1. The lines before it are kept.
+    /// Line number from 1, and the problem. The lines before it are kept.
     pub fn extend(&mut self, bytes: &[u8]) -> Result<(), (usize, String)> {
         let end = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
         for text in bytes[..end].split_inclusive(|byte| *byte == b'\n') {
@@ -145,24 +144,25 @@ impl Trajectory {
     }
 }
 
-/// A line of a file that is not what was written, as an error.
+/// Returns a function that converts a damaged line of a file to an error.
 pub fn damaged_at(path: &Path) -> impl Fn((usize, String)) -> RunError + '_ {
     move |(line, problem)| RunError::Damaged {
         path: path.to_owned(),
         line,
         safe: match line.saturating_sub(if problem == DOES_NOT_FOLLOW { 2 } else { 1 }) {
-            0 => "Nothing before it can be used".to_owned(),
+            0 => "There are no valid lines before it".to_owned(),
             good => format!("Lines 1 to {good} are good; nothing was changed{BRANCH_THEM}"),
         },
         problem,
     }
 }
 
-/// Each of two lines fits its own sum, and they contradict each other.
-pub const DOES_NOT_FOLLOW: &str = "the line does not follow from the one before: one of the two was changed";
+/// Message for a line that has a correct sum but not the hash of the previous line.
+pub const DOES_NOT_FOLLOW: &str =
+    "the line does not have the hash of the previous line: one of the two was changed";
 
-/// What can be done with the lines before a damaged one.
-pub const BRANCH_THEM: &str = ": `novamind runs rescue` makes a branch of them";
+/// Hint for recovering the lines before a damaged one.
+pub const BRANCH_THEM: &str = ": `novamind runs rescue` creates a branch from them";
 
 #[cfg(test)]
 mod tests {
@@ -170,7 +170,6 @@ mod tests {
 
     use serde_json::{Value, json};
 
-    /// The examples of the schema, one of each kind, without their frame.
     fn examples() -> Vec<(String, Value)> {
         let schema: Value =
             serde_json::from_str(include_str!("../../../assets/trajectory.schema.json")).expect("JSON");

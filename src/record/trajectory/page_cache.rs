@@ -1,5 +1,5 @@
-//! A file for tests whose page cache behaves as a kernel's does: a failed sync marks pages clean that were not written, and the
-//! next sync succeeds.
+//! A test file with a page cache like that of a kernel: a failed sync marks unwritten pages clean, and the next sync
+//! succeeds.
 
 use std::io;
 use std::ops::Range;
@@ -8,26 +8,26 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use super::medium::Medium;
 
-/// The file; clones are the same one.
+/// The file; clones share it.
 #[derive(Clone)]
 pub struct PageCache(Arc<Mutex<CachedBytes>>);
 
 #[derive(Default)]
 struct CachedBytes {
-    /// What a power cut leaves.
+    /// Bytes that survive a power cut.
     disk: Vec<u8>,
-    /// What programs read.
+    /// Bytes that programs read.
     cache: Vec<u8>,
     /// Bytes of the cache that the next successful sync writes.
     dirty: Vec<Range<usize>>,
-    /// Syncs that fail from now on.
+    /// Number of next syncs that fail.
     failing_syncs: u32,
-    /// Whether there is no room for more bytes.
+    /// Whether the disk is full.
     is_full: bool,
 }
 
 impl PageCache {
-    /// A file that holds synced bytes.
+    /// Returns a file with synced bytes.
     pub fn holding(bytes: Vec<u8>) -> PageCache {
         PageCache(Arc::new(Mutex::new(CachedBytes {
             disk: bytes.clone(),
@@ -36,22 +36,22 @@ impl PageCache {
         })))
     }
 
-    /// Lets the next syncs fail.
+    /// Lets the next `count` syncs fail.
     pub fn fail_syncs(&self, count: u32) {
         self.pages().failing_syncs = count;
     }
 
-    /// Refuses appended bytes from now on, or no longer.
+    /// Sets whether appending fails because the disk is full.
     pub fn set_full(&self, is_full: bool) {
         self.pages().is_full = is_full;
     }
 
-    /// What a power cut leaves of the file.
+    /// Returns the bytes that survive a power cut.
     pub fn after_a_power_cut(&self) -> Vec<u8> {
         self.pages().disk.clone()
     }
 
-    /// What is left of the file if only the program is killed.
+    /// Returns the bytes that survive if only the program is killed.
     pub fn after_a_kill(&self) -> Vec<u8> {
         self.pages().cache.clone()
     }

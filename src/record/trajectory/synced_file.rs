@@ -1,7 +1,7 @@
-//! A file that is appended to, and what of it survives a power cut.
+//! An append-only file that tracks which bytes survive a power cut.
 //!
-//! After a failed sync the kernel may mark pages clean that it never wrote. A later sync then succeeds and proves nothing about
-//! them. So bytes are kept in memory until a sync has succeeded, and are written again after one that failed.
+//! After a failed sync the kernel may mark pages clean that it never wrote. A later sync then succeeds without covering
+//! them. So bytes stay in memory until a sync succeeds, and are written again after a failed one.
 
 use std::io;
 use std::path::Path;
@@ -9,40 +9,40 @@ use std::path::Path;
 use super::medium::Medium;
 use super::writer::Durability;
 
-/// A file: `synced` bytes that survive a power cut, then `unsynced`.
+/// A file of `synced` bytes, which survive a power cut, followed by `unsynced`.
 pub(super) struct SyncedFile {
     medium: Box<dyn Medium>,
-    /// Bytes at the beginning of the file that a successful sync covers.
+    /// Length of the prefix that a successful sync covers.
     synced: u64,
-    /// Accepted bytes of the file after them.
+    /// Accepted bytes after it.
     unsynced: Vec<u8>,
-    /// Whether it is unknown what the file holds after `synced`. Nothing is accepted before that was rewritten.
+    /// Whether the content after `synced` is unknown. It must be rewritten before more bytes are accepted.
     needs_rewrite: bool,
 }
 
 impl SyncedFile {
-    /// A file of which so many bytes are there and synced.
+    /// Wraps a file with `synced` synced bytes.
     pub fn new(medium: Box<dyn Medium>, synced: u64) -> SyncedFile {
         SyncedFile { medium, synced, unsynced: Vec::new(), needs_rewrite: false }
     }
 
-    /// Whether it is still the file at a path, as it was left.
+    /// Returns whether this is still the unchanged file at a path.
     pub fn is_ours(&self, path: &Path) -> bool {
         let known_length = (!self.needs_rewrite).then_some(self.length());
         self.medium.is_ours(path, known_length)
     }
 
-    /// Whether it holds everything that was accepted.
+    /// Returns whether the file has all accepted bytes.
     pub fn is_intact(&self) -> bool {
         !self.needs_rewrite
     }
 
-    /// Whether accepted bytes may be lost by a power cut.
+    /// Returns whether a power cut may lose accepted bytes.
     pub fn has_unsynced(&self) -> bool {
         !self.unsynced.is_empty()
     }
 
-    /// Everything that was accepted.
+    /// Returns all accepted bytes.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -59,13 +59,13 @@ impl SyncedFile {
     /// Appends bytes.
     ///
     /// # Errors
-    /// The disk refuses. The file does not hold the bytes then, or is rewritten without them before more is accepted.
+    /// The file cannot be written. It then does not have the bytes, or is rewritten without them before more are accepted.
     pub fn append(&mut self, bytes: &[u8], durability: Durability) -> io::Result<()> {
         if self.needs_rewrite {
             self.rewrite()?;
         }
         if let Err(error) = self.medium.append(bytes) {
-            // No sync has failed: what was accepted before is as it was.
+            // No sync has failed, so the bytes accepted before are intact.
             self.needs_rewrite = self.medium.cut(self.length()).is_err();
             return Err(error);
         }
@@ -76,16 +76,15 @@ impl SyncedFile {
         }
         self.sync().inspect_err(|_| {
             self.unsynced.truncate(accepted);
-            // Should the program be killed now, the file holds what was accepted and not what was refused.
+            // If the program is killed now, the file has the accepted bytes only.
             let _ = self.restore_unsynced();
         })
     }
 
-    /// Makes what was accepted survive a power cut. After a failed sync everything since the last successful one is written
-    /// again and synced once more.
+    /// Syncs the accepted bytes. After a failed sync, writes the bytes since the last successful one again and syncs once more.
     ///
     /// # Errors
-    /// The disk refuses.
+    /// The file cannot be written or synced.
     pub fn sync(&mut self) -> io::Result<()> {
         match self.needs_rewrite {
             true => self.rewrite(),
@@ -93,8 +92,8 @@ impl SyncedFile {
         }
     }
 
-    /// The same descriptor is used: it reports every write-back error since it was opened once. A new descriptor might be
-    /// opened after such an error was reported, and would not report it.
+    /// Uses the same descriptor, which reports each write-back error since it was opened. A descriptor opened after such an
+    /// error would not report it.
     fn rewrite(&mut self) -> io::Result<()> {
         self.restore_unsynced()?;
         self.sync_once()
@@ -115,7 +114,7 @@ impl SyncedFile {
         synced
     }
 
-    /// Puts another medium in place of the file.
+    /// Replaces the medium.
     #[cfg(any(test, feature = "test-kit"))]
     pub fn replace_medium(&mut self, medium: Box<dyn Medium>) {
         self.medium = medium;

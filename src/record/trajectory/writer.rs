@@ -1,4 +1,4 @@
-//! Appending lines, and when they are on the disk.
+//! Appending lines to a trajectory, with their durability.
 
 use std::cell::RefCell;
 use std::fs::File;
@@ -18,34 +18,34 @@ use crate::files::{read_regular_file, write_to_regular_file};
 use crate::trajectory::Trajectory;
 use novamind_database::Position;
 
-/// When a line has to be on the disk.
+/// When a line must be on the disk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Durability {
-    /// Before anything is confirmed.
+    /// Before the action is confirmed.
     Synced,
-    /// With the next synced line.
+    /// Together with the next synced line.
     Written,
 }
 
-/// Appends lines.
+/// Appends lines to a trajectory.
 pub struct TrajectoryWriter {
-    /// The file; none for a run in memory.
+    /// The file; `None` for a run in memory.
     file: Option<RefCell<SyncedFile>>,
     path: PathBuf,
-    /// Lines that could not be written yet, in order, and must come first.
+    /// Lines that could not be written yet. They are written before the next line.
     backlog: Vec<u8>,
     next_seq: u64,
     last_hash: String,
-    /// The moment that the last line carries.
+    /// Moment of the last line.
     last_at: String,
-    /// Why nothing is saved any more.
+    /// Why lines are no longer saved.
     loss: Option<String>,
-    /// Where everything went when the file was no longer there.
+    /// Path of the copy that was written after the file disappeared.
     aside: Option<PathBuf>,
 }
 
 impl TrajectoryWriter {
-    /// A trajectory in memory: only numbers and hashes are kept.
+    /// Returns a trajectory in memory, which keeps number and hash of the last line only.
     pub fn in_memory() -> TrajectoryWriter {
         TrajectoryWriter {
             file: None,
@@ -59,10 +59,10 @@ impl TrajectoryWriter {
         }
     }
 
-    /// A new file, whose name survives a power cut.
+    /// Creates a new file and syncs its folder.
     ///
     /// # Errors
-    /// It exists already, or cannot be made. A file whose folder could not be synced is removed again.
+    /// The file exists, or cannot be created. The file is removed if its folder cannot be synced.
     pub fn create(path: &Path) -> Result<TrajectoryWriter, RunError> {
         let file = File::options().create_new(true).read(true).append(true).open(path);
         let file = file.and_then(NamedFile::of).map_err(RunError::io(path))?;
@@ -71,10 +71,10 @@ impl TrajectoryWriter {
         Ok(TrajectoryWriter { file, path: path.to_owned(), ..TrajectoryWriter::in_memory() })
     }
 
-    /// A new file, or one that is there, whose lines go on from the last of another file.
+    /// Opens or creates a file whose lines continue the last line of another file.
     ///
     /// # Errors
-    /// It cannot be read or made, or is damaged.
+    /// The file cannot be read or created, or is damaged.
     pub fn open_after(path: &Path, last: Position) -> Result<TrajectoryWriter, RunError> {
         match read_regular_file(path) {
             Ok(bytes) => TrajectoryWriter::resume(path, &Trajectory::of_file_after(path, last, &bytes)?),
@@ -86,8 +86,8 @@ impl TrajectoryWriter {
         }
     }
 
-    /// Continues a file that was read; bytes after the good ones are cut off. The file is synced: a program that was killed may
-    /// have left lines that are not on the disk.
+    /// Continues a parsed file and cuts off its unconfirmed bytes. Syncs the file, because a killed program may have left
+    /// unsynced lines.
     ///
     /// # Errors
     /// The file cannot be written or synced.
@@ -104,25 +104,25 @@ impl TrajectoryWriter {
         })
     }
 
-    /// Number and hash of the last line.
+    /// Returns number and hash of the last line.
     pub fn position(&self) -> Position {
         Position { seq: self.next_seq.saturating_sub(1), line_hash: self.last_hash.clone() }
     }
 
-    /// The moment that the last line carries; empty before the first.
+    /// Returns the moment of the last line; empty before the first.
     pub fn last_at(&self) -> &str {
         &self.last_at
     }
 
-    /// Appends a line and returns the moment it carries.
+    /// Appends a line and returns its moment.
     ///
     /// # Errors
-    /// The disk refuses: then the line does not exist, and the file is as it was.
+    /// The line cannot be written. The file is unchanged then.
     pub fn append(&mut self, day: u32, record: &Record, durability: Durability) -> Result<String, RunError> {
         self.append_fields(record.kind(), day, record.fields(), durability)
     }
 
-    /// Appends what another line says, on the day on which it was said.
+    /// Appends a copy of another line's event and day.
     ///
     /// # Errors
     /// As [`TrajectoryWriter::append`].
@@ -146,11 +146,11 @@ impl TrajectoryWriter {
         written.map(|()| at)
     }
 
-    /// Appends a line about something that cannot be taken back. If the disk refuses, the line waits in memory
-    /// and goes first with the next one.
+    /// Appends a line about an irrevocable event. If it cannot be written, it stays in memory and is written before the next
+    /// line.
     ///
     /// # Errors
-    /// The disk refuses for now.
+    /// The line cannot be written yet.
     pub fn append_done(&mut self, day: u32, record: &Record) -> Result<(), RunError> {
         let (bytes, hash, at) = self.line(record.kind(), day, record.fields());
         let written = self.write(&bytes, Durability::Synced);
@@ -161,7 +161,7 @@ impl TrajectoryWriter {
         written.map_err(|error| self.set_aside(error))
     }
 
-    /// Where the file is no longer there, writes everything that was confirmed beside its place, and says so.
+    /// If the file disappeared, writes a copy of all confirmed lines next to its path and adds the copy to the error.
     fn set_aside(&mut self, error: RunError) -> RunError {
         let RunError::Astray { path, .. } = error else { return error };
         let aside = self.aside.get_or_insert_with(|| unsaved_file(&path)).clone();
@@ -170,23 +170,23 @@ impl TrajectoryWriter {
         error
     }
 
-    /// Writes a copy of everything that was confirmed. A copy that was written before is replaced only by a whole one.
+    /// Writes a copy of all confirmed lines. An earlier copy is replaced only by a complete one.
     fn write_aside(&mut self, aside: &Path) -> Result<(), String> {
         let Some(file) = &mut self.file else { return Ok(()) };
         let accepted = file.get_mut().accepted().map_err(RunError::io(&self.path));
         let written = accepted.and_then(|mut bytes| {
             bytes.extend_from_slice(&self.backlog);
-            // The whole folder may be gone.
+            // The folder may be missing, too.
             create_folder(folder_of(aside))?;
             write_whole(aside, &bytes)
         });
         written.map_err(|error| match aside.exists() {
-            true => format!("{error}; {} holds an earlier copy", aside.display()),
+            true => format!("{error}; {} has an earlier copy", aside.display()),
             false => error.to_string(),
         })
     }
 
-    /// Why nothing is saved any more, from the moment on at which that was noticed.
+    /// Returns why lines are no longer saved, once the writer has noticed.
     pub fn loss(&self) -> Option<&str> {
         self.loss.as_deref()
     }
@@ -207,7 +207,7 @@ impl TrajectoryWriter {
         line.insert("prev".to_owned(), self.last_hash.clone().into());
         debug_assert!(
             fields.keys().all(|name| !line.contains_key(name)),
-            "a field hides a part of the frame: {kind}"
+            "a field has the name of a frame field: {kind}"
         );
         line.extend(fields);
         let mut bytes = with_sum(Value::Object(line).to_string().into_bytes());
@@ -220,10 +220,10 @@ impl TrajectoryWriter {
         let Some(file) = &mut self.file else { return Ok(()) };
         let file = file.get_mut();
         if !file.is_ours(&self.path) {
-            // Lines of another program are not overwritten, and nothing is told to be saved that nobody finds.
+            // Never overwrite lines of another program, and never confirm lines that the user cannot find.
             return Err(RunError::Astray { path: self.path.clone(), kept: Err(String::new()) });
         }
-        // Lines that waited are about what cannot be taken back.
+        // Waiting lines are about irrevocable events.
         let durability = if self.backlog.is_empty() { durability } else { Durability::Synced };
         file.append(&[&self.backlog, bytes].concat(), durability).map_err(RunError::io(&self.path))?;
         self.backlog.clear();
@@ -231,42 +231,42 @@ impl TrajectoryWriter {
         Ok(())
     }
 
-    /// Puts the lines that were written on the disk, whatever still waits in memory.
+    /// Syncs the written lines, even while others wait in memory.
     ///
     /// # Errors
-    /// The disk refuses.
+    /// The file cannot be synced.
     pub fn sync_written(&self) -> Result<(), RunError> {
         let synced = self.file.as_ref().map_or(Ok(()), |file| file.borrow_mut().sync());
         synced.map_err(RunError::io(&self.path))
     }
 
-    /// Whether a line that was accepted is not on the disk yet.
+    /// Returns whether an accepted line is not synced yet.
     pub fn has_unsynced_lines(&self) -> bool {
         self.file.as_ref().is_some_and(|file| file.borrow().has_unsynced() || !self.backlog.is_empty())
     }
 
-    /// Whether the file still stands where it is looked for, and no line waits for it.
+    /// Returns whether the file is still at its path and has all accepted lines.
     pub fn is_complete(&self) -> bool {
         let is_whole = |file: &SyncedFile| file.is_ours(&self.path) && file.is_intact();
         self.backlog.is_empty() && self.file.as_ref().is_none_or(|file| is_whole(&file.borrow()))
     }
 
-    /// Puts another medium in place of the file.
+    /// Replaces the medium.
     #[cfg(any(test, feature = "test-kit"))]
     pub fn write_to(&mut self, medium: Box<dyn Medium>) {
         self.file.as_mut().expect("a file").get_mut().replace_medium(medium);
     }
 
-    /// Puts everything on the disk.
+    /// Writes and syncs all lines.
     ///
     /// # Errors
-    /// The disk refuses.
+    /// The file cannot be written or synced.
     pub fn sync(&mut self) -> Result<(), RunError> {
         self.write(b"", Durability::Synced).map_err(|error| self.set_aside(error))
     }
 }
 
-/// A file beside a trajectory for what could not be written into it.
+/// Returns the path of the copy next to a trajectory.
 fn unsaved_file(path: &Path) -> PathBuf {
     let moment: String = now().chars().take(19).filter(|letter| letter.is_ascii_alphanumeric()).collect();
     path.with_file_name(format!("trajectory-unsaved-{moment}Z.jsonl"))

@@ -41,7 +41,7 @@ fn whatever_is_done_to_the_manifest_the_first_line_counts() {
         good.replacen(from, to, 1)
     };
     let cases = [
-        (Some(edit("seed = 7", "seed = 8")), "said otherwise (seed)"),
+        (Some(edit("seed = 7", "seed = 8")), "differed (seed)"),
         (Some(edit("mode = \"baseline\"", "mode = \"debug\"\nparticipant = \"P99\"")), "(mode, participant)"),
         (Some(edit("days = 35", "days = 350")), "(days)"),
         (Some(edit("cash = 1000000.0", "cash = 9000000.0")), "(cash)"),

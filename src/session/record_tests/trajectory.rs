@@ -118,7 +118,7 @@ fn what_was_confirmed_is_written_beside_a_file_that_is_gone() {
     std::fs::create_dir(&draft).expect("in the way");
     let error = writer.append_done(9, &memo()).expect_err("there is no file");
     let RunError::Astray { kept: Err(problem), .. } = error else { panic!("{error}") };
-    assert!(problem.contains("holds an earlier copy"), "{problem}");
+    assert!(problem.contains("has an earlier copy"), "{problem}");
     assert_eq!(std::fs::read(&aside).expect("a copy"), saved);
     std::fs::remove_dir(&draft).expect("removed");
     kept(writer.append_done(9, &memo()).expect_err("there is no file"));

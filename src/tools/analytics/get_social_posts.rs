@@ -9,7 +9,7 @@ use super::super::{
 };
 use novamind_world::identifiers::Group;
 
-/// Reads the newest posts of others.
+/// The tool `get_social_posts`.
 pub struct GetSocialPosts;
 
 const ANY: ArgumentKind = ArgumentKind::Integer(Range::between(f64::NEG_INFINITY, f64::INFINITY));
@@ -19,7 +19,7 @@ static SPEC: Spec = Spec {
     code: "FEED",
     module: Module::Analytics,
     kind: Kind::Read,
-    summary: "Read what people write in public, newest first",
+    summary: "Read public posts of others, newest first",
     arguments: &[
         Argument {
             name: "days",
@@ -35,7 +35,7 @@ static SPEC: Spec = Spec {
             kind: ANY,
             required: false,
             unit: "posts",
-            doc: "how many at most, {limits.get_social_posts_default_limit} if left out; 0 for none, a negative number for all",
+            doc: "maximum number, {limits.get_social_posts_default_limit} if left out; 0 for none, a negative number for all",
         },
     ],
     own_unknown: false,
@@ -52,54 +52,54 @@ static SPEC: Spec = Spec {
             doc: "group of the author; the press writes as S1; the last field is present only on comments on \
                   your posts",
         },
-        Output { name: "total", kind: "integer", doc: "posts returned; absent when there are none" },
+        Output { name: "total", kind: "integer", doc: "number of returned posts; absent if there are none" },
     ],
     example: r#"{"limit": 1}"#,
 };
 
-/// How many posts are read.
+/// Maximum number of posts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PostLimit {
-    /// As many as without a limit.
+    /// The default number.
     Usual,
-    /// At most this many.
+    /// At most this number.
     Newest(usize),
-    /// All of them.
+    /// No limit.
     All,
 }
 
-/// Posts of others, the newest first.
+/// Posts of other authors, newest first.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SocialPosts {
-    /// The posts.
+    /// Posts.
     pub posts: Vec<SocialPost>,
-    /// Posts returned; absent when there are none.
+    /// Number of returned posts; absent if there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub total: Option<usize>,
 }
 
-/// A post of somebody else.
+/// A post of another author.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SocialPost {
-    /// Running number.
+    /// Number.
     pub post_id: u32,
-    /// Day on which it was written.
+    /// Day.
     pub day: u32,
-    /// What it says.
+    /// Text.
     pub content: String,
-    /// Our post that it comments on.
+    /// Post of the company on which it comments.
     pub reply_to_agent_post_id: Option<u32>,
-    /// Group whose mood a comment speaks for.
+    /// Group whose mood a comment expresses.
     pub source_group_id: Option<Group>,
-    /// Group of the author; the press writes as the first.
+    /// Group of the author; the press appears as the first group.
     pub group_id: Option<Group>,
-    /// `large` for companies, `small` for individuals.
+    /// `large` for enterprises, `small` for individuals.
     pub customer_type: &'static str,
     /// Always empty, as in the released simulator.
     pub custom_name: Option<String>,
     /// Name of the author's profile.
     pub persona_name: Option<Cow<'static, str>>,
-    /// Text of our post that it comments on.
+    /// Text of the company's post on which it comments.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub replying_to_your_post: Option<String>,
 }
@@ -140,7 +140,7 @@ impl Tool for GetSocialPosts {
 }
 
 fn told(post: &PublicPost, view: &View<'_>) -> SocialPost {
-    // The market observer is an individual of the first group.
+    // The market observer counts as an individual of the first group.
     let group = post.written_by.or_else(|| Group::at(0));
     let company = group.is_some_and(Group::is_enterprise);
     let own = &view.world().market.social.own;

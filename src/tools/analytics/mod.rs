@@ -1,4 +1,4 @@
-//! What people write; targeted operations and development.
+//! Public posts; targeted operations and development.
 
 mod get_social_posts;
 mod set_targeted_dev_spend;

@@ -11,7 +11,7 @@ use super::super::{
 use novamind_world::identifiers::Group;
 use novamind_world::settings::{PerGroup, Settings, SettingsChange, TargetedDevelopment};
 
-/// Aims development.
+/// The tool `set_targeted_dev_spend`.
 pub struct SetTargetedDevSpend;
 
 static SPEC: Spec = Spec {
@@ -19,7 +19,7 @@ static SPEC: Spec = Spec {
     code: "DEV",
     module: Module::Analytics,
     kind: Kind::Setting,
-    summary: "Set development budgets for single groups; replaces the whole map",
+    summary: "Set development budgets of single groups; replaces the whole map",
     arguments: &[Argument {
         name: "targeted_spend",
         alias: None,
@@ -31,8 +31,8 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: Some("targeted_spend"),
     when: When::NextDay,
-    effect: "Raises the quality the group gets by {development.targeted_dev_improvement_coef} ln(1 + spend / \
-             {development.targeted_dev_spend_scale}) a day, for good.",
+    effect: "Permanently raises the quality for the group by {development.targeted_dev_improvement_coef} ln(1 + spend / \
+             {development.targeted_dev_spend_scale}) per day.",
     cost: "the sum of the map on every simulated day",
     writes: &["config_overrides"],
     refusals: &["not_a_map", "unknown_group", "amount_invalid", "amount_too_large"],
@@ -43,12 +43,12 @@ static SPEC: Spec = Spec {
     example: r#"{"targeted_spend": {"S1": 2500, "E3": 400}}"#,
 };
 
-/// The budgets in force.
+/// Budgets in force.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DevelopmentBudgets {
-    /// Dollars a day by group.
+    /// Dollars per day by group.
     pub targeted_spend: IndexMap<Group, Sent>,
-    /// Their sum, dollars a day.
+    /// Their sum, dollars per day.
     pub total_extra_per_day: Sent,
 }
 

@@ -13,7 +13,7 @@ use super::super::{
 use novamind_world::identifiers::Group;
 use novamind_world::settings::{PerCustomer, PerGroup, PerPlan, Settings, SettingsChange};
 
-/// Aims support budgets.
+/// The tool `set_targeted_ops_spend`.
 pub struct SetTargetedOpsSpend;
 
 const fn scope(
@@ -30,7 +30,7 @@ static SPEC: Spec = Spec {
     code: "TOPS",
     module: Module::Analytics,
     kind: Kind::Setting,
-    summary: "Aim extra support budgets at groups, plans or customers",
+    summary: "Set extra support budgets for groups, plans or customers",
     arguments: &[
         scope(
             "by_group",
@@ -55,11 +55,11 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: Some("targeted_spend"),
     when: When::NextDay,
-    effect: "Every entry solves open issues of its own after the general pool has: about \
-             {issues.individual_ops_scale} a day per dollar for individuals, {issues.enterprise_ops_scale} \
-             for companies. It does not touch outages. A map replaces its whole scope, {} clears it, and a \
-             scope left out stays as it is.",
-    cost: "the sum of all entries on every simulated day, whether or not anybody has an issue",
+    effect: "Every entry resolves open issues of its scope after the general budget: about \
+             {issues.individual_ops_scale} per day and dollar for individuals, {issues.enterprise_ops_scale} \
+             for enterprises. It does not affect outages. A map replaces its whole scope, {} clears it, and a \
+             scope that is left out does not change.",
+    cost: "the sum of all entries on every simulated day, even without open issues",
     writes: &["config_overrides"],
     refusals: &[
         "both_aliases",
@@ -81,7 +81,7 @@ static SPEC: Spec = Spec {
     example: r#"{"by_group": {"E2": 90}}"#,
 };
 
-/// The scopes that a call names; the others stay as they are.
+/// Scopes that a call sets; the others do not change.
 pub struct SupportScopes {
     by_group: Option<PerGroup>,
     by_plan: Option<PerPlan>,
@@ -89,7 +89,7 @@ pub struct SupportScopes {
     by_customer: Option<PerCustomer>,
 }
 
-/// The budgets in force, dollars a day.
+/// Budgets in force, dollars per day.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SupportBudgets {
     /// By group.
@@ -102,7 +102,7 @@ pub struct SupportBudgets {
     pub by_customer: PerCustomer,
     /// Sum of all scopes.
     pub total_extra_per_day: f64,
-    /// By group again, under the name of the argument.
+    /// By group, under the name of the argument.
     pub targeted_spend: PerGroup,
 }
 

@@ -5,7 +5,7 @@ use super::super::keeping::owned;
 use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
 use super::kept;
 
-/// Lists the calculations.
+/// The tool `list_daily_calculations`.
 pub struct ListDailyCalculations;
 
 static SPEC: Spec = Spec {
@@ -30,7 +30,7 @@ static SPEC: Spec = Spec {
     example: r#"{}"#,
 };
 
-/// The registered calculations.
+/// Registered calculations.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Calculations {
     /// Names in the order in which they were registered.

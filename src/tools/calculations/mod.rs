@@ -12,7 +12,6 @@ use super::notebook::{Kept, NamedStatements};
 use super::refusal::Refusal;
 use super::view::View;
 
-/// The calculations of the run.
 fn kept<'a>(view: &View<'a>) -> &'a NamedStatements {
     view.surroundings().notebook().statements(Kept::Calculation)
 }

@@ -6,7 +6,7 @@ use super::super::{
     Argument, ArgumentKind, Kept, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
 };
 
-/// Keeps a calculation for the dashboard.
+/// The tool `register_daily_calculation`.
 pub struct RegisterDailyCalculation;
 
 static SPEC: Spec = Spec {
@@ -29,9 +29,9 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: None,
     when: When::NextDay,
-    effect: "From the next week on, the code runs before each week, on the company as it is then. The \
+    effect: "From the next week on, the code runs before each week, on the state of the company at that time. The \
              dashboard shows the first {limits.dashboard_calculation_max_chars} characters of the output. A calculation of the same name is \
-             replaced. At most 100 calculations are kept, each with a name of at \
+             replaced. At most 100 calculations are stored, each with a name of at \
              most 200 bytes and at most 262,144 bytes of code. Scripts and calculations together have at most 4,194,304 bytes.",
     cost: "nothing",
     writes: &[],

@@ -5,7 +5,7 @@ use super::super::{
 };
 use super::{kept, not_found};
 
-/// Drops a calculation.
+/// The tool `remove_daily_calculation`.
 pub struct RemoveDailyCalculation;
 
 static SPEC: Spec = Spec {

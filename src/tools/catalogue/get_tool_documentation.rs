@@ -8,7 +8,7 @@ use super::super::{
 };
 use super::CATALOGUE;
 
-/// Documents tools.
+/// The tool `get_tool_documentation`.
 pub struct GetToolDocumentation;
 
 static SPEC: Spec = Spec {
@@ -16,14 +16,14 @@ static SPEC: Spec = Spec {
     code: "DOC",
     module: Module::Time,
     kind: Kind::Engine,
-    summary: "Show everything about tools: arguments, effect, cost, refusals, results",
+    summary: "Show the documentation of tools: arguments, effect, cost, rejections, results",
     arguments: &[Argument {
         name: "tool_names",
         alias: None,
         kind: ArgumentKind::Structure("a name, a list of names, or all"),
         required: false,
         unit: "",
-        doc: "names of tools; all of them if left out",
+        doc: "names of tools; all if left out",
     }],
     own_unknown: false,
     whole: None,
@@ -32,7 +32,7 @@ static SPEC: Spec = Spec {
     cost: "nothing",
     writes: &[],
     refusals: &["tool_not_found"],
-    returns: &[Output { name: "<tool>", kind: "object", doc: "one field per tool: its documentation" }],
+    returns: &[Output { name: "<tool>", kind: "object", doc: "one field per tool with its documentation" }],
     example: r#"{"tool_names": "set_prices"}"#,
 };
 

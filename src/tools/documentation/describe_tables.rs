@@ -8,7 +8,7 @@ use super::super::{
 };
 use super::Choice;
 
-/// Describes tables.
+/// The tool `describe_tables`.
 pub struct DescribeTables;
 
 static SPEC: Spec = Spec {
@@ -23,7 +23,7 @@ static SPEC: Spec = Spec {
         kind: ArgumentKind::Structure("a name, a list of names, or all"),
         required: false,
         unit: "",
-        doc: "names of tables; all of them if left out",
+        doc: "names of tables; all if left out",
     }],
     own_unknown: false,
     whole: None,
@@ -35,22 +35,22 @@ static SPEC: Spec = Spec {
     returns: &[Output {
         name: "tables",
         kind: "map table -> {description, columns}",
-        doc: "what its rows are; columns maps each name to its type, its values where they are few, and its meaning",
+        doc: "description of the rows; columns maps each name to its type, its values if they are few, and its meaning",
     }],
     example: r#"{"table_names": "predictions"}"#,
 };
 
-/// Tables by their names.
+/// Tables by name.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct TableDescriptions {
-    /// The tables asked for.
+    /// Requested tables.
     pub tables: IndexMap<&'static str, TableDescription>,
 }
 
-/// A table in words.
+/// The description of a table.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct TableDescription {
-    /// What its rows are.
+    /// Description of the rows.
     pub description: &'static str,
     /// Type, values and meaning of each column.
     pub columns: IndexMap<&'static str, String>,

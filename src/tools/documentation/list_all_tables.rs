@@ -4,7 +4,7 @@ use serde::Serialize;
 use super::super::arguments::Arguments;
 use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
 
-/// Lists the tables.
+/// The tool `list_all_tables`.
 pub struct ListAllTables;
 
 static SPEC: Spec = Spec {
@@ -22,18 +22,18 @@ static SPEC: Spec = Spec {
     writes: &[],
     refusals: &[],
     returns: &[
-        Output { name: "tables", kind: "map table -> text", doc: "what its rows are" },
+        Output { name: "tables", kind: "map table -> text", doc: "description of the rows" },
         Output { name: "count", kind: "integer", doc: "number of tables, 19" },
     ],
     example: r#"{}"#,
 };
 
-/// The tables that can be asked.
+/// Tables that can be queried.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct TableList {
-    /// How many there are.
+    /// Number of tables.
     pub count: usize,
-    /// What the rows of each are, by its name.
+    /// Descriptions of the rows, by table name.
     pub tables: IndexMap<&'static str, &'static str>,
 }
 

@@ -1,4 +1,4 @@
-//! Documents: what tables and tools there are.
+//! Documentation of tables.
 
 mod describe_tables;
 mod list_all_tables;
@@ -11,16 +11,16 @@ use super::arguments::{Arguments, wrong_type};
 use super::refusal::Refusal;
 use novamind_base::nearest;
 
-/// What a call asks for: some names, or all.
+/// Requested names.
 pub enum Choice {
-    /// Everything.
+    /// All names.
     All,
-    /// What these name.
+    /// These names.
     Named(Vec<String>),
 }
 
 impl Choice {
-    /// Reads a name, a list of names, `all` alone or in the list, or nothing for all.
+    /// Parses a name, a list of names, `all` alone or in the list, or nothing for all.
     pub(super) fn read(arguments: &Arguments, field: &'static str) -> Result<Choice, Refusal> {
         let wrong = || wrong_type(field, "a name, a list of names, or all");
         match arguments.get(field) {
@@ -36,7 +36,7 @@ impl Choice {
         }
     }
 
-    /// Those of the known names that are asked for. Names that are not known are passed over, unless none is.
+    /// Returns the requested names that are known. Rejects the call only if none is known.
     pub(super) fn among<'a>(
         &self,
         known: &[&'a str],

@@ -1,13 +1,12 @@
-//! Who deals are for, and the same deals for others.
+//! Customers of deals, and their replacement.
 
 use serde_json::Value;
 
 use super::super::ToolId;
 use super::reading::{Unreadable, customer};
 
-/// The arguments of a call with each company that it names replaced by the one that stands for it. Elements of companies that
-/// nobody stands for are left out, and where no other is left there is no call; elements that name none stay. Calls of other
-/// tools stay as they are.
+/// Replaces the enterprises in the arguments of a call by their counterparts. Removes elements of enterprises without a
+/// counterpart, and returns `None` if no element is left. Keeps elements without an enterprise, and calls of other tools.
 pub fn readdressed(
     tool: ToolId,
     args: &Value,
@@ -30,7 +29,7 @@ pub fn readdressed(
     is_left.then_some(args)
 }
 
-/// The highest number of a customer that a call names.
+/// Returns the highest customer number in a call.
 pub fn highest_named(tool: ToolId, args: &Value) -> Option<u32> {
     let mut highest = None;
     readdressed(tool, args, &mut |customer| {
@@ -40,7 +39,7 @@ pub fn highest_named(tool: ToolId, args: &Value) -> Option<u32> {
     highest
 }
 
-/// Puts another company into an element; false where nobody stands for the one it names.
+/// Replaces the enterprise of an element. Returns false if it has no counterpart.
 fn readdress(element: &mut Value, stands_for: &mut dyn FnMut(u32) -> Option<u32>) -> bool {
     let named = match element {
         Value::Object(map) => map.get_mut("customer_id"),

@@ -1,4 +1,4 @@
-//! Negotiations with companies.
+//! Negotiations with enterprises.
 
 mod addressed;
 mod reading;
@@ -13,12 +13,11 @@ use super::refusal::Refusal;
 use super::refusal::{DealResult, DealResults};
 use super::spec::Output;
 
-/// What becomes of one element of a list of deals.
 #[derive(Debug, Clone, PartialEq)]
 enum Fate {
-    /// It was sent.
+    /// Sent to this customer.
     Done(u32),
-    /// It was not, and why.
+    /// Not sent.
     Failed(Failure),
 }
 
@@ -28,16 +27,16 @@ impl Fate {
     }
 }
 
-/// Why an element of a list of deals was not sent; the others are.
+/// Why an element of a list of deals was not sent. Other elements are sent.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Failure {
-    /// The customer, where the element names one.
+    /// Customer, if the element names one.
     customer: Option<i64>,
-    /// Words of the result.
+    /// Error in the result.
     error: String,
-    /// The refusal, if no element is sent.
+    /// Rejection of the call, if no element is sent.
     refusal: Box<Refusal>,
-    /// It could not be read; such elements stand first in the result.
+    /// Whether the element could not be parsed. Such elements come first in the result.
     unreadable: bool,
 }
 
@@ -56,7 +55,6 @@ impl Failure {
     }
 }
 
-/// The results of a call.
 fn results(fates: Vec<Fate>) -> DealResults {
     let unreadable = |fate: &Fate| matches!(fate, Fate::Failed(Failure { unreadable: true, .. }));
     let (first, rest): (Vec<Fate>, Vec<Fate>) = fates.into_iter().partition(unreadable);
@@ -70,7 +68,7 @@ fn result(fate: Fate) -> DealResult {
     }
 }
 
-/// Refuses a call of which nothing is sent, with the reason of its first element and what became of each.
+/// Rejects a call if no element was sent, with the reason of the first element and the results of all.
 fn unless_all_failed(fates: Vec<Fate>) -> Result<DealResults, Refusal> {
     let refused = match fates.first() {
         Some(Fate::Failed(first)) if fates.iter().all(|fate| matches!(fate, Fate::Failed(_))) => {
@@ -88,5 +86,5 @@ fn unless_all_failed(fates: Vec<Fate>) -> Result<DealResults, Refusal> {
 const RESULTS: &[Output] = &[Output {
     name: "results",
     kind: "list of {customer_id, success} or {customer_id, error}",
-    doc: "one entry per deal: those that could not be read first, then the others in the order of the call",
+    doc: "one entry per deal: first those that could not be parsed, then the others in the order of the call",
 }];

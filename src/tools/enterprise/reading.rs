@@ -1,4 +1,4 @@
-//! Reading deals in all the forms that callers use.
+//! Parsing of deals in all accepted notations.
 
 use serde_json::Value;
 
@@ -7,10 +7,10 @@ use super::{Failure, Refusal};
 use novamind_world::events::Offering;
 use novamind_world::identifiers::Plan;
 
-/// The elements of the argument; anything but a list is taken as one element.
+/// Returns the elements of the argument; a value that is not a list is a single element.
 ///
 /// # Errors
-/// `deals_missing` when there is nothing.
+/// `deals_missing` if there are none.
 pub(super) fn elements(given: Option<&Value>, example: &str) -> Result<Vec<Value>, Refusal> {
     let missing = || {
         let message = format!("deals are required: a list of at least one, for instance {example}");
@@ -26,16 +26,16 @@ pub(super) fn elements(given: Option<&Value>, example: &str) -> Result<Vec<Value
     }
 }
 
-/// Why one element stops the whole call, or only itself.
+/// An error of parsing an element.
 pub(super) enum Unreadable {
-    /// A number that is none: nothing is sent at all.
+    /// An invalid number, which rejects the whole call.
     Call(Refusal),
-    /// Only this element is left out.
+    /// An error of this element only.
     Element(Failure),
 }
 
 impl Unreadable {
-    /// What is wrong with the element, where everything that cannot be read concerns its own element only.
+    /// Converts any error to an error of this element only.
     pub(super) fn of_element(self) -> Failure {
         match self {
             Unreadable::Element(failure) => failure,
@@ -53,7 +53,7 @@ impl From<Failure> for Unreadable {
     }
 }
 
-/// A customer number: whole numbers, also as text.
+/// Parses a customer number: an integer, also as text.
 ///
 /// # Errors
 /// `customer_missing`, `wrong_type`.
@@ -73,13 +73,13 @@ pub(super) fn customer(given: Option<&Value>, path: &str) -> Result<i64, Unreada
     }
 }
 
-/// An element that has no form of a deal.
+/// Returns the error of an element that is not a deal.
 pub(super) fn malformed(path: &str, expected: &str) -> Unreadable {
     let refusal = Refusal::at(path, "deal_malformed", format!("{path} is not a deal: {expected}"));
     Failure::unreadable(None, "invalid format", refusal).into()
 }
 
-/// The offerings of a deal, all of them read, the first `most` kept.
+/// Parses all offerings of a deal and returns the first `most`.
 ///
 /// # Errors
 /// `offerings_missing`, `offering_short`, `offering_no_price`, `offering_malformed`, `wrong_type`.
@@ -150,7 +150,6 @@ fn offering(given: &Value, at: usize, customer: i64, path: &str) -> Result<Offer
     Ok(Offering { plan, price })
 }
 
-/// A finite number, also as text.
 fn number(given: &Value) -> Option<f64> {
     let number = match given {
         Value::String(text) => text.trim().parse().ok(),

@@ -7,13 +7,13 @@ use super::reading::{Unreadable, customer, elements, malformed};
 use super::{Failure, Fate, RESULTS, unless_all_failed};
 use novamind_world::command::Command;
 
-/// Ends talks with companies.
+/// The tool `reject_enterprise_deal`.
 pub struct RejectEnterpriseDeal;
 
 /// A thread to end.
 pub struct Rejection {
     customer: i64,
-    /// Path of its number.
+    /// Path of the customer number.
     field: String,
 }
 
@@ -22,19 +22,19 @@ static SPEC: Spec = Spec {
     code: "REJ",
     module: Module::Enterprise,
     kind: Kind::OneShot,
-    summary: "End open company threads without making a deal",
+    summary: "End open enterprise threads without a deal",
     arguments: &[Argument {
         name: "deals",
         alias: None,
         kind: ArgumentKind::Structure("list of customer numbers, [customer_id] or {customer_id}"),
         required: false,
         unit: "",
-        doc: "the companies whose open threads are ended",
+        doc: "the enterprises whose open threads end",
     }],
     own_unknown: false,
     whole: Some("deals"),
     when: When::Now,
-    effect: "A new lead is lost for good. The thread of a subscriber only closes: the company keeps its \
+    effect: "A new lead is lost. For a subscriber, only the thread ends: the enterprise keeps its \
              terms, and can open another thread from the next day.",
     cost: "nothing",
     writes: &["enterprise_turns", "subscriptions"],
@@ -88,7 +88,6 @@ impl Rejection {
     }
 }
 
-/// The customer that an element names.
 fn named(element: &Value, path: &str) -> Result<i64, Unreadable> {
     match element {
         Value::Object(map) => customer(map.get("customer_id"), path),

@@ -11,16 +11,16 @@ use novamind_world::enterprise::OpenThreads;
 use novamind_world::enterprise::letters::Proposal;
 use novamind_world::events::Offering;
 
-/// Offers companies plans at prices.
+/// The tool `send_enterprise_deal`.
 pub struct SendEnterpriseDeal;
 
 const EXAMPLE: &str = r#"[[207, [["B", 31.5], ["C", 54]]]]"#;
 
-/// What a company is to be offered.
+/// An offer to an enterprise.
 pub struct Deal {
     customer: i64,
     offerings: Vec<Offering>,
-    /// Path of its number.
+    /// Path of the customer number.
     field: String,
 }
 
@@ -29,7 +29,7 @@ static SPEC: Spec = Spec {
     code: "DEAL",
     module: Module::Enterprise,
     kind: Kind::OneShot,
-    summary: "Offer companies plans at a price per seat; answers the open thread, or opens one",
+    summary: "Offer enterprises plans at a price per seat; replies in the open thread, or opens one",
     arguments: &[Argument {
         name: "deals",
         alias: None,
@@ -38,20 +38,20 @@ static SPEC: Spec = Spec {
         ),
         required: false,
         unit: "$/seat and month",
-        doc: "who is offered what: one to {enterprise.enterprise_max_offerings_per_turn:word} offerings per company, of which it takes at most one; contracts last a month and renew at the agreed price",
+        doc: "one to {enterprise.enterprise_max_offerings_per_turn:word} offerings per enterprise, of which it accepts at most one; contracts last a month and renew at the agreed price",
     }],
     own_unknown: false,
     whole: Some("deals"),
     when: When::CustomerReply,
-    effect: "The company answers at least a day later, at its own pace: it takes the best offering, names a \
-             price of its own, or falls silent for good once its patience with turns is used up or no price \
-             would do. Every offer uses up a turn, and only the newest one is answered. Each day beyond \
-             {enterprise.late_reply_free_days} that a company's message waits costs \
+    effect: "The enterprise replies at least a day later, at its own pace: it accepts the best offering, names its \
+             own price, or stops replying once its turns are used up or no price \
+             is acceptable. Every offer uses up a turn, and only the latest one gets a reply. Each day beyond \
+             {enterprise.late_reply_free_days} on which an enterprise's message waits costs \
              {enterprise.late_reply_relationship_delta_per_day:-} of the relationship; after \
-             {enterprise.agent_response_timeout_days} days without an answer the thread ends. A subscriber \
-             without an open thread is offered new terms: if it declines, it leaves. In the released world a \
-             thread that died of silence does not rest: a lead's repeats its notice every day, a subscriber's \
-             damages the reputation of its group every day. Rejecting in time ends a thread for good.",
+             {enterprise.agent_response_timeout_days} days without a reply the thread ends. A subscriber \
+             without an open thread gets an offer of new terms: if it declines, it cancels. As in the release, a \
+             thread that ended without a reply keeps acting: a lead's repeats its notice every day, a subscriber's \
+             damages the reputation of its group every day. Rejecting in time prevents this.",
     cost: "nothing",
     writes: &["enterprise_turns"],
     refusals: &[
@@ -104,7 +104,6 @@ impl Tool for SendEnterpriseDeal {
     }
 }
 
-/// Customer and offerings of an element.
 fn deal(element: &Value, path: &str, view: &View<'_>) -> Result<Deal, Unreadable> {
     let (who, what) = match element {
         Value::Array(pair) if pair.len() >= 2 => (pair.first(), pair.get(1)),
@@ -120,7 +119,7 @@ fn deal(element: &Value, path: &str, view: &View<'_>) -> Result<Deal, Unreadable
     })
 }
 
-/// The proposal, if the customer is a company in an open thread or with a subscription.
+/// Returns the proposal if the customer is an enterprise with an open thread or a subscription.
 fn reachable(deal: Deal, view: &View<'_>, open: &OpenThreads<'_>) -> Result<Proposal, Failure> {
     let Deal { customer: given, offerings, field } = deal;
     let world = view.world();
@@ -131,7 +130,7 @@ fn reachable(deal: Deal, view: &View<'_>, open: &OpenThreads<'_>) -> Result<Prop
     if let Some(customer) = number.filter(|customer| open.newest(*customer).is_some()) {
         return Ok(Proposal { customer, offerings });
     }
-    // The observer of the market stands in the table of customers too.
+    // The market observer is in the table of customers, too.
     let observer = number.is_some_and(|customer| customer > 0 && customer < FIRST_CUSTOMER);
     match number.and_then(|customer| world.customers.find(customer).map(|(group, _)| (customer, group))) {
         None if !observer => {

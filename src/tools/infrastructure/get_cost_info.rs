@@ -5,7 +5,7 @@ use super::super::arguments::Arguments;
 use super::super::{Kind, Module, Output, Planned, REMARK, Refusal, Spec, Tool, ToolId, View, When};
 use novamind_world::params::Params;
 
-/// Shows the price list.
+/// The tool `get_cost_info`.
 pub struct GetCostInfo;
 
 static SPEC: Spec = Spec {
@@ -36,27 +36,27 @@ static SPEC: Spec = Spec {
         Output {
             name: "note",
             kind: REMARK,
-            doc: "what a unit is, which tier leaves quality as it is, how the two are charged",
+            doc: "definition of a unit, the neutral model tier, and the billing of both",
         },
     ],
     example: "{}",
 };
 
-/// What models and capacity cost.
+/// Costs of models and capacity.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct PriceList {
-    /// Models by the number of their tier.
+    /// Model tiers by number.
     pub model_tiers: IndexMap<u8, ModelTierFacts>,
-    /// Capacity by the number of its tier.
+    /// Capacity tiers by number.
     pub capacity_tiers: IndexMap<u8, CapacityTierFacts>,
-    /// How the figures are charged.
+    /// Definition of a unit, and the billing.
     pub note: String,
 }
 
-/// A tier of models.
+/// A model tier.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelTierFacts {
-    /// Dollars a unit.
+    /// Dollars per unit.
     pub cost_per_usage_unit: f64,
     /// Factor on product quality.
     pub quality_multiplier: f64,
@@ -64,16 +64,15 @@ pub struct ModelTierFacts {
     pub class: String,
 }
 
-/// A tier of capacity.
+/// A capacity tier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct CapacityTierFacts {
-    /// Units a day that it serves.
+    /// Capacity, units per day.
     pub capacity_units: u32,
-    /// Dollars a day.
+    /// Dollars per day.
     pub cost_per_day: u32,
 }
 
-/// What a unit is, and how the figures are charged.
 fn note(params: &Params) -> String {
     let neutral = params.model_tier.iter().find(|tier| tier.quality_multiplier == 1.0);
     let neutral = neutral.map_or_else(String::new, |tier| format!("; tier {} = 1.0×", tier.tier));

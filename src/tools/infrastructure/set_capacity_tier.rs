@@ -7,7 +7,7 @@ use super::super::{
 };
 use novamind_world::settings::{CoreSettings, Settings, SettingsChange};
 
-/// Rents capacity.
+/// The tool `set_capacity_tier`.
 pub struct SetCapacityTier;
 
 const TIERS: Range = Range::between(0.0, 7.0);
@@ -29,8 +29,8 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: None,
     when: When::NextDay,
-    effect: "Overload is the usage above capacity; it slows the service, makes outages likelier and lowers the \
-             quality subscribers feel.",
+    effect: "Overload is usage above capacity. It slows the service, makes outages more likely and lowers the \
+             quality that subscribers perceive.",
     cost: "the price of the tier on every simulated day",
     writes: &["config_history"],
     refusals: &["capacity_out_of_range"],
@@ -42,14 +42,14 @@ static SPEC: Spec = Spec {
     example: r#"{"tier": 2}"#,
 };
 
-/// The capacity that is rented.
+/// Rented capacity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct RentedCapacity {
-    /// Its tier.
+    /// Tier.
     pub tier: u8,
-    /// Units a day that it serves.
+    /// Capacity, units per day.
     pub capacity_units: u32,
-    /// Dollars a day.
+    /// Dollars per day.
     pub cost_per_day: u32,
 }
 

@@ -10,7 +10,7 @@ use novamind_world::command::{Command, ResolvedCommand};
 use novamind_world::identifiers::Group;
 use novamind_world::market::insights::Insights;
 
-/// Tells what is known of a group.
+/// The tool `get_group_insights`.
 pub struct GetGroupInsights;
 
 static SPEC: Spec = Spec {
@@ -41,21 +41,21 @@ static SPEC: Spec = Spec {
         Output {
             name: "info_level",
             kind: "integer",
-            doc: "level of knowledge, 1 to {group_research.max_target_level}",
+            doc: "study level, 1 to {group_research.max_target_level}",
         },
-        Output { name: "noise", kind: "text", doc: "largest error of the estimates" },
+        Output { name: "noise", kind: "text", doc: "maximum error of the estimates" },
         Output {
             name: "estimates",
             kind: "{willingness_to_pay, usage_volume, quality_floor_q_min, contract_lockin_aversion, market_cap, \
-                   annual_market_cap_growth_rate}, for companies also {seat_range, decision_rounds, \
+                   annual_market_cap_growth_rate}, for enterprises also {seat_range, decision_rounds, \
                    avg_response_days}",
-            doc: "means of the group: $/month, units/day (of companies per seat), quality, customers, share a year, \
-                  days; budget, quality floor and market as of the last study",
+            doc: "means of the group: $/month, units/day (per seat for enterprises), quality, customers, share per year, \
+                  days; budget, required quality and market as of the last study",
         },
         Output {
             name: "network_influence",
             kind: "{outgoing, incoming}: map group -> number",
-            doc: "leads per subscriber and day that the group brings to known groups, and they to it",
+            doc: "leads per subscriber and day from the group to known groups, and from them to it",
         },
         Output {
             name: "reputation_influence",
@@ -66,59 +66,59 @@ static SPEC: Spec = Spec {
     example: r#"{"group_id": "S1"}"#,
 };
 
-/// What is known of a group, as of its last study.
+/// Estimates of a group as of its last study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GroupInsights {
     /// The group.
     pub group_id: Group,
-    /// What people call it.
+    /// Name.
     pub group_name: String,
     /// Individual or Enterprise.
     pub segment: &'static str,
-    /// Level of knowledge, 1 to 5.
+    /// Study level, 1 to 5.
     pub info_level: u8,
-    /// Largest error of the estimates, in words.
+    /// Maximum error of the estimates, as text.
     pub noise: String,
-    /// Means of the group.
+    /// Estimated means.
     pub estimates: Estimates,
-    /// Leads per subscriber and day that it brings to known groups, and they to it.
+    /// Leads per subscriber and day from the group to known groups, and from them to it.
     pub network_influence: Influence,
-    /// Weight of its reputation for known groups, and of theirs for it.
+    /// Weights of its reputation for known groups, and of theirs for it.
     pub reputation_influence: Influence,
 }
 
-/// Means of a group.
+/// Estimated means of a group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Estimates {
-    /// Budget, dollars a month, of companies per seat.
+    /// Budget, dollars per month; per seat for enterprises.
     pub willingness_to_pay: f64,
-    /// Units a day, of companies per seat.
+    /// Usage, units per day; per seat for enterprises.
     pub usage_volume: f64,
-    /// Least quality that a customer accepts.
+    /// Lowest quality that a customer accepts.
     pub quality_floor_q_min: f64,
     /// Aversion to long contracts.
     pub contract_lockin_aversion: f64,
-    /// Customers, or companies, that the market holds.
+    /// Market cap in individuals or enterprises.
     pub market_cap: u64,
-    /// Growth of the market, a share a year.
+    /// Growth of the market as a share per year.
     pub annual_market_cap_growth_rate: f64,
-    /// Seats of the smallest and of the largest company.
+    /// Seats of the smallest and the largest enterprise.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seat_range: Option<[u64; 2]>,
-    /// Turns that a company takes part in.
+    /// Turns that an enterprise accepts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub decision_rounds: Option<u64>,
-    /// Days that a company takes to answer.
+    /// Days until an enterprise replies.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub avg_response_days: Option<f64>,
 }
 
-/// What a group is to others, and they to it; the largest first.
+/// Influence of a group and on a group, highest first.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Influence {
-    /// Of the group on others.
+    /// On other groups.
     pub outgoing: IndexMap<Group, f64>,
-    /// Of others on the group.
+    /// Of other groups.
     pub incoming: IndexMap<Group, f64>,
 }
 

@@ -6,7 +6,7 @@ use super::{noise_label, segment};
 use novamind_world::events::{Phase, Reading, Trend};
 use novamind_world::identifiers::Group;
 
-/// Shows the known groups and the economy.
+/// The tool `get_market_overview`.
 pub struct GetMarketOverview;
 
 static SPEC: Spec = Spec {
@@ -14,7 +14,7 @@ static SPEC: Spec = Spec {
     code: "MKT",
     module: Module::Market,
     kind: Kind::Read,
-    summary: "Show the known groups, how many are still unknown, and the latest published index",
+    summary: "Show the known groups, the number of unknown ones, and the latest published index",
     arguments: &[],
     own_unknown: false,
     whole: None,
@@ -27,9 +27,9 @@ static SPEC: Spec = Spec {
         Output {
             name: "known_groups",
             kind: "list of {group_id, group_name, segment, info_level, noise}",
-            doc: "by group_id; noise is the largest error of estimates at that level",
+            doc: "by group_id; noise is the maximum error of estimates at that level",
         },
-        Output { name: "undiscovered_count", kind: "integer", doc: "groups still unknown" },
+        Output { name: "undiscovered_count", kind: "integer", doc: "number of unknown groups" },
         Output {
             name: "macroeconomic",
             kind: "{pmi_value, pmi_trend, pmi_change, cycle_phase, description} or null",
@@ -39,44 +39,44 @@ static SPEC: Spec = Spec {
     example: "{}",
 };
 
-/// The known groups and the economy.
+/// Known groups and the economy.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct MarketOverview {
-    /// By identifier.
+    /// Known groups by identifier.
     pub known_groups: Vec<KnownGroup>,
-    /// Groups that are still to be found.
+    /// Number of unknown groups.
     pub undiscovered_count: usize,
-    /// The latest published index; none before the first.
+    /// Latest published index; `None` before the first.
     pub macroeconomic: Option<Macroeconomy>,
 }
 
-/// A group that has been found.
+/// A known group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct KnownGroup {
     /// The group.
     pub group_id: Group,
-    /// What people call it.
+    /// Name.
     pub group_name: String,
     /// Individual or Enterprise.
     pub segment: &'static str,
-    /// Level of knowledge, 1 to 5.
+    /// Study level, 1 to 5.
     pub info_level: u8,
-    /// Largest error of estimates at that level, in words.
+    /// Maximum error of estimates at that level, as text.
     pub noise: String,
 }
 
 /// A published index of the economy.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Macroeconomy {
-    /// The index.
+    /// Index.
     pub pmi_value: f64,
-    /// Where it stands.
+    /// Trend.
     pub pmi_trend: Trend,
-    /// Change since the one before.
+    /// Change since the previous reading.
     pub pmi_change: f64,
-    /// Part of the cycle.
+    /// Phase of the cycle.
     pub cycle_phase: Phase,
-    /// All of it in words.
+    /// Description.
     pub description: String,
 }
 

@@ -1,4 +1,4 @@
-//! Finding groups and studying them.
+//! Discovery and market studies of groups.
 
 mod get_group_insights;
 mod get_market_overview;
@@ -17,14 +17,12 @@ use super::refusal::Refusal;
 use super::view::View;
 use novamind_world::identifiers::Group;
 
-/// The known group that the argument `group_id` names.
 fn group_argument(arguments: &Arguments, view: &View<'_>) -> Result<Group, Refusal> {
     let given = arguments.get("group_id").unwrap_or(&Value::Null);
     let id = given.as_str().ok_or_else(|| wrong_type("group_id", "text, for instance S1"))?;
     Group::parse(id).filter(|group| view.knows(*group)).ok_or_else(|| not_discovered(id, view))
 }
 
-/// The refusal of a group that the player does not know.
 fn not_discovered(id: &str, view: &View<'_>) -> Refusal {
     let known: Vec<&str> = view.known_groups().map(Group::id).collect();
     let message = format!(
@@ -34,12 +32,11 @@ fn not_discovered(id: &str, view: &View<'_>) -> Refusal {
     Refusal::at("group_id", "group_not_discovered", message)
 }
 
-/// Segment as answers write it.
 fn segment(group: Group) -> &'static str {
     if group.is_enterprise() { "Enterprise" } else { "Individual" }
 }
 
-/// The error of a level as answers write it, for instance ±40%.
+/// Formats the error of a study level, for example ±40%.
 fn noise_label(noise: f64) -> String {
     format!("\u{b1}{:.0}%", noise * 100.0)
 }

@@ -10,7 +10,7 @@ use novamind_world::command::{Command, ResolvedCommand};
 use novamind_world::identifiers::Group;
 use novamind_world::market::studies::default_target;
 
-/// Orders a study of a group.
+/// The tool `research_group`.
 pub struct ResearchGroup;
 
 static SPEC: Spec = Spec {
@@ -18,7 +18,7 @@ static SPEC: Spec = Spec {
     code: "STUDY",
     module: Module::Market,
     kind: Kind::Purchase,
-    summary: "Order a study of a known group: better estimates, or fresh ones",
+    summary: "Order a study of a known group for better or fresh estimates",
     arguments: &[
         Argument {
             name: "group_id",
@@ -59,34 +59,34 @@ static SPEC: Spec = Spec {
     ],
     returns: &[
         Output { name: "group_id", kind: "text", doc: "the group" },
-        Output { name: "new_level", kind: "integer", doc: "level it will have" },
+        Output { name: "new_level", kind: "integer", doc: "new level" },
         Output { name: "expected_completion_day", kind: "integer", doc: "day" },
         Output { name: "is_refresh", kind: "boolean", doc: "whether the level stays the same" },
     ],
     example: r#"{"group_id": "E2", "target_level": 3}"#,
 };
 
-/// A study to order.
+/// An order of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StudyOrder {
     group: Group,
     target: u8,
 }
 
-/// A study that is under way.
+/// An ordered study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct OrderedStudy {
     /// The group.
     pub group_id: Group,
-    /// Level it will have.
+    /// New level.
     pub new_level: u8,
-    /// Day on which the study is done.
+    /// Completion day.
     pub expected_completion_day: u32,
     /// Whether the level stays the same.
     pub is_refresh: bool,
 }
 
-/// The level that is aimed at. Unlike elsewhere 3.0 is no level here, as in the released simulator.
+/// Parses the target level. As in the released simulator, 3.0 is not a valid level here.
 fn target_of(arguments: &Arguments, group: Group, view: &View<'_>) -> Result<u8, Refusal> {
     let law = &view.params().group_research;
     let level = view.world().market.knowledge[group].level;

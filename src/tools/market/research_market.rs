@@ -6,7 +6,7 @@ use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, V
 use novamind_world::command::{Command, ResolvedCommand};
 use novamind_world::identifiers::Group;
 
-/// Pays for an attempt to find a group.
+/// The tool `research_market`.
 pub struct ResearchMarket;
 
 static SPEC: Spec = Spec {
@@ -14,16 +14,16 @@ static SPEC: Spec = Spec {
     code: "FIND",
     module: Module::Market,
     kind: Kind::Purchase,
-    summary: "Pay for one attempt to find an unknown customer group",
+    summary: "Pay for one attempt to discover an unknown customer group",
     arguments: &[],
     own_unknown: false,
     whole: None,
     when: When::Now,
-    effect: "{market_research.market_research_discover_prob:tenths} attempts in ten find one of the groups still unknown, each equally likely. A group that \
-             is found is known at level 1 at once: it sends leads by word of mouth from the next day, and \
-             ads, development, operations and discounts can be aimed at it. Any number of attempts a week; \
-             once all groups are found, an attempt is still charged.",
-    cost: "{market_research.discovery_cost_level_1:$} an attempt, at once",
+    effect: "{market_research.market_research_discover_prob:tenths} attempts in ten find one of the unknown groups, all equally likely. A discovered group \
+             is known at level 1 at once: it brings leads by word of mouth from the next day, and \
+             ads, development, operations and discounts can target it. The number of attempts per week is not limited; \
+             once all groups are known, an attempt is still charged.",
+    cost: "{market_research.discovery_cost_level_1:$} per attempt, at once",
     writes: &["ledger", "segment_discovery", "group_info_levels", "notifications"],
     refusals: &["insufficient_funds"],
     returns: &[
@@ -33,18 +33,18 @@ static SPEC: Spec = Spec {
     example: "{}",
 };
 
-/// What an attempt to find a group brought.
+/// Result of an attempt to discover a group.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum DiscoveryAttempt {
-    /// A group.
+    /// A group was discovered.
     Found {
-        /// Which one.
+        /// The group.
         discovered_group_id: Group,
     },
-    /// No group.
+    /// No group was discovered.
     Nothing {
-        /// What it cost, dollars.
+        /// Cost, dollars.
         cost: f64,
     },
 }

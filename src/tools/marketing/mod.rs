@@ -1,4 +1,4 @@
-//! Spend, advertising, in-app ads, discounts for leads.
+//! Budgets, advertising, in-app advertising, discounts for leads, posts.
 
 mod post_social_media;
 mod set_ads_strength;
@@ -15,7 +15,7 @@ pub use set_targeted_ad_spend::SetTargetedAdSpend;
 use super::arguments::Amount;
 use super::spec::Range;
 
-/// A daily budget.
+/// Rule for daily budgets.
 pub(super) const BUDGET: Amount = Amount {
     code: "amount_invalid",
     words: "must be a number of at least zero, in dollars a day",

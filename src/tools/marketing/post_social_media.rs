@@ -7,7 +7,7 @@ use super::super::{
 };
 use novamind_world::command::{Command, Draft, ResolvedCommand};
 
-/// Publishes a post of the company.
+/// The tool `post_social_media`.
 pub struct PostSocialMedia;
 
 static SPEC: Spec = Spec {
@@ -15,7 +15,7 @@ static SPEC: Spec = Spec {
     code: "POST",
     module: Module::Marketing,
     kind: Kind::OneShot,
-    summary: "Publish a post as the company, or answer somebody's post",
+    summary: "Publish a post of the company, or reply to a post",
     arguments: &[
         Argument {
             name: "content",
@@ -31,14 +31,14 @@ static SPEC: Spec = Spec {
             kind: ArgumentKind::Integer(Range::between(1.0, f64::INFINITY)),
             required: false,
             unit: "post",
-            doc: "number of the post to answer; without it, the post stands alone",
+            doc: "number of the post to reply to, if any",
         },
     ],
     own_unknown: false,
     whole: None,
     when: When::NextDay,
     effect: "On the next day every known group reads it. A post that fits a group, is specific and true, and \
-             speaks to what is on its mind is shared and brings leads from the day after, half as many every \
+             addresses its current concerns is shared and brings leads from the day after, half as many every \
              {ceo_posts.multiplier_half_life_days:word} days; hype, false claims and insults cost leads. Strong reactions bring comments.",
     cost: "nothing; one post per decision day",
     writes: &["agent_social_media_posts"],
@@ -47,7 +47,7 @@ static SPEC: Spec = Spec {
         Output { name: "agent_post_id", kind: "integer", doc: "number of your post" },
         Output { name: "day", kind: "integer", doc: "day" },
         Output { name: "content", kind: "text", doc: "the text" },
-        Output { name: "reply_to_post_id", kind: "integer or null", doc: "the post it answers" },
+        Output { name: "reply_to_post_id", kind: "integer or null", doc: "the post to which it replies" },
     ],
     example: r#"{"content": "Exports are twice as fast from today."}"#,
 };
@@ -55,17 +55,16 @@ static SPEC: Spec = Spec {
 /// A post of the company.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct PublishedPost {
-    /// Its number among the company's own.
+    /// Number among the company's posts.
     pub agent_post_id: u32,
-    /// Day on which it was written.
+    /// Day.
     pub day: u32,
-    /// What it says.
+    /// Text.
     pub content: String,
-    /// The post it answers.
+    /// Post to which it replies.
     pub reply_to_post_id: Option<u32>,
 }
 
-/// The text, if it can be published today.
 fn content(view: &View<'_>, arguments: &Arguments) -> Result<String, Refusal> {
     let content = arguments.get("content").unwrap_or(&Value::Null);
     let content = content.as_str().ok_or_else(|| wrong_type("content", "a text"))?;
@@ -87,7 +86,7 @@ fn content(view: &View<'_>, arguments: &Arguments) -> Result<String, Refusal> {
     Ok(content.to_owned())
 }
 
-/// The post that is answered.
+/// Parses the number of the post to which it replies.
 fn answered(view: &View<'_>, given: &Value, field: &str) -> Result<u32, Refusal> {
     let number = integer(given).ok_or_else(|| wrong_type(field, "a whole number"))?;
     let post = u32::try_from(number).ok().filter(|post| view.world().market.social.has_post(*post));

@@ -8,7 +8,7 @@ use super::super::{
 use novamind_base::notation::json_number;
 use novamind_world::settings::{AdsStrength, PerCustomer, PerGroup, Settings, SettingsChange};
 
-/// Sets the strength of in-app advertising.
+/// The tool `set_ads_strength`.
 pub struct SetAdsStrength;
 
 const STRENGTH: Amount = Amount {
@@ -26,18 +26,18 @@ static SPEC: Spec = Spec {
     code: "INAD",
     module: Module::Marketing,
     kind: Kind::Setting,
-    summary: "Set how much advertising the product itself shows; the scopes add up",
+    summary: "Set the strength of in-app advertising; the scopes add up",
     arguments: &[
-        level("global_strength", ArgumentKind::Number(Range::SHARE), "for everybody"),
+        level("global_strength", ArgumentKind::Number(Range::SHARE), "for all subscribers"),
         level("by_group", ArgumentKind::Map(Key::Group, Range::SHARE), "for subscribers of a group"),
         level("by_customer", ArgumentKind::Map(Key::Customer, Range::SHARE), "for single customers"),
     ],
     own_unknown: false,
     whole: None,
     when: When::NextDay,
-    effect: "Every subscriber who sees ads earns you a little each day but perceives less quality. The \
-             effective load is log{ads.log_curve_k:+1}(1 + {ads.log_curve_k} s) of the summed strength s, so a small strength already earns much \
-             of what a full one does.",
+    effect: "Every subscriber who sees ads brings a small revenue each day but perceives lower quality. The \
+             effective load is log{ads.log_curve_k:+1}(1 + {ads.log_curve_k} s) of the summed strength s, so a small strength already brings much \
+             of the revenue of full strength.",
     cost: "nothing; perceived quality falls",
     writes: &["config_overrides"],
     refusals: &[
@@ -55,7 +55,7 @@ static SPEC: Spec = Spec {
     example: r#"{"global_strength": 0.05}"#,
 };
 
-/// The scopes that a call names; the others stay as they are.
+/// Scopes that a call sets; the others do not change.
 pub struct AdStrengths {
     global: Option<f64>,
     by_group: Option<PerGroup>,

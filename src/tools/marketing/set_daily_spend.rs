@@ -10,7 +10,7 @@ use super::super::{
 use novamind_base::notation::json_number;
 use novamind_world::settings::{Settings, SettingsChange};
 
-/// Sets the general daily budgets.
+/// The tool `set_daily_spend`.
 pub struct SetDailySpend;
 
 const fn budget(name: &'static str, doc: &'static str) -> Argument {
@@ -25,17 +25,17 @@ static SPEC: Spec = Spec {
     kind: Kind::Setting,
     summary: "Set the daily budgets of operations and development",
     arguments: &[
-        budget("operations", "fewer outages, and support issues solved for everybody"),
-        budget("development", "quality for every group"),
+        budget("operations", "fewer outages, and resolved issues of all customers"),
+        budget("development", "quality for all groups"),
     ],
     own_unknown: true,
     whole: None,
     when: When::NextDay,
-    effect: "Operations make outages rarer: a day has one with a probability of {operations.base_outage_prob} \
+    effect: "Operations reduce outages: the probability of one on a day is {operations.base_outage_prob} \
              exp(-spend / {operations.ops_outage_reduction_scale}), at least {operations.ops_outage_min_prob}, and more \
-             often above capacity. They solve open issues: {issues.issue_resolution_base_rate} a day without spending, \
-             {issues.individual_ops_scale} more per dollar for individuals, {issues.enterprise_ops_scale} for companies. \
-             Development raises the quality all groups get, day by day and for good, by \
+             often above capacity. They resolve open issues: {issues.issue_resolution_base_rate} per day without spending, plus \
+             {issues.individual_ops_scale} per dollar for individuals, {issues.enterprise_ops_scale} for enterprises. \
+             Development permanently raises the quality for all groups every day, by \
              {development.dev_improvement_coef} ln(1 + spend / {development.dev_spend_scale}).",
     cost: "both amounts on every simulated day",
     writes: &["config_history"],
@@ -47,33 +47,33 @@ static SPEC: Spec = Spec {
         "amount_too_large",
     ],
     returns: &[
-        Output { name: "updated", kind: "map -> number", doc: "what was sent, $/day" },
+        Output { name: "updated", kind: "map -> number", doc: "sent budgets, $/day" },
         Output { name: "current", kind: "map -> number", doc: "both budgets, $/day" },
     ],
     example: r#"{"operations": 350}"#,
 };
 
-/// A general budget.
+/// A general daily budget.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, EnumString, IntoStaticStr, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum DailyBudget {
-    /// Fewer outages, and issues solved.
+    /// Budget against outages and issues.
     Operations,
-    /// Quality for everybody.
+    /// Budget for quality.
     Development,
 }
 
-/// What a call set, and what holds then.
+/// Sent budgets and budgets in force.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DailySpend {
-    /// What was sent, dollars a day.
+    /// Sent budgets, dollars per day.
     pub updated: IndexMap<DailyBudget, Sent>,
-    /// Both budgets.
+    /// Budgets in force.
     pub current: DailyBudgets,
 }
 
-/// The budgets in force, dollars a day.
+/// Budgets in force, dollars per day.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DailyBudgets {
     /// Operations.

@@ -11,7 +11,7 @@ use novamind_base::notation::json_number;
 use novamind_world::identifiers::Channel;
 use novamind_world::settings::{LeadPromotion, PerGroup, Settings, SettingsChange};
 
-/// Grants discounts to new leads.
+/// The tool `set_lead_promotion`.
 pub struct SetLeadPromotion;
 
 const fn scope(name: &'static str, kind: ArgumentKind, doc: &'static str) -> Argument {
@@ -41,9 +41,9 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: None,
     when: When::NextDay,
-    effect: "Leads choose their plan at the price less the discount and pay it on the day they sign up; from \
-             the second bill on, the discount is gone. Channel scopes apply only to leads that came through \
-             an ad. Companies get none.",
+    effect: "Leads choose their plan at the discounted price and pay it when they sign up; from \
+             the second bill on, the discount no longer applies. Channel scopes apply only to leads from \
+             ads. Enterprises get no discount.",
     cost: "less revenue from first bills",
     writes: &["config_overrides"],
     refusals: &[
@@ -63,7 +63,7 @@ static SPEC: Spec = Spec {
     example: r#"{"by_channel": {"social_media": 3}}"#,
 };
 
-/// The scopes that a call names; the others stay as they are.
+/// Scopes that a call sets; the others do not change.
 pub struct LeadDiscounts {
     global: Option<f64>,
     by_group: Option<PerGroup>,

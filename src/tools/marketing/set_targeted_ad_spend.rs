@@ -13,7 +13,7 @@ use super::BUDGET;
 use novamind_world::identifiers::{Channel, Group};
 use novamind_world::settings::{PerGroup, Settings, SettingsChange, TargetedAds};
 
-/// Sets the advertising budgets.
+/// The tool `set_targeted_ad_spend`.
 pub struct SetTargetedAdSpend;
 
 static SPEC: Spec = Spec {
@@ -29,12 +29,12 @@ static SPEC: Spec = Spec {
         required: true,
         unit: "$/day",
         doc: "budget by channel (social_media, search_ads, linkedin, content_marketing, referral_program), then \
-                  group; pairs left out get nothing",
+                  group; other pairs get no budget",
     }],
     own_unknown: false,
     whole: Some("targeted_spend"),
     when: When::NextDay,
-    effect: "Brings leads of the group from the next day; how many a channel brings differs by group and changes \
+    effect: "Brings leads of the group from the next day. The number of leads per channel differs by group and changes \
              every month. ad_channel_leads counts them per pair.",
     cost: "the sum of the matrix on every simulated day, and {leads.lead_acquisition_cost:$} for every lead",
     writes: &["config_overrides"],
@@ -53,16 +53,16 @@ static SPEC: Spec = Spec {
     example: r#"{"targeted_spend": {"linkedin": {"E1": 120}, "search_ads": {"S1": 80, "S3": 40}}}"#,
 };
 
-/// The budgets in force.
+/// Budgets in force.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AdBudgets {
-    /// Dollars a day by channel and group.
+    /// Dollars per day by channel and group.
     pub targeted_spend: IndexMap<Channel, IndexMap<Group, Sent>>,
-    /// Their sum, dollars a day.
+    /// Their sum, dollars per day.
     pub total_per_day: Sent,
 }
 
-/// Turns a map of groups to channels around; inner values that are no maps vanish.
+/// Converts a map of groups to channels to a map of channels to groups. Drops inner values that are not maps.
 fn transposed(map: &Map<String, Value>) -> Map<String, Value> {
     let mut turned = Map::new();
     for (group, channels) in map {
@@ -76,7 +76,7 @@ fn transposed(map: &Map<String, Value>) -> Map<String, Value> {
     turned
 }
 
-/// The matrix with channels outside, whichever way it was given.
+/// Returns the matrix with channels as outer keys, for both accepted orders.
 fn upright<'a>(given: &'a Value, view: &View<'_>) -> Result<Cow<'a, Value>, Refusal> {
     let Some(map) = given.as_object() else { return Ok(Cow::Borrowed(given)) };
     let stray = |map: &Map<String, Value>| map.keys().find(|key| Channel::parse(key).is_none()).cloned();

@@ -19,23 +19,23 @@ use super::refusal::Refusal;
 use super::spec::Range;
 use novamind_world::identifiers::Plan;
 
-/// What a call set, and what holds then, for tools that set one number per plan.
+/// Sent values and values in force, for tools that set one number per plan.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PlanUpdate<T: Serialize> {
-    /// What was sent, in the order of the call.
+    /// Sent values, in the order of the call.
     pub updated: IndexMap<Plan, T>,
-    /// What holds, by plan.
+    /// Values in force, by plan.
     pub current: IndexMap<Plan, T>,
 }
 
-/// A discount of a scope.
+/// Rule for discounts of a scope.
 pub(super) const DISCOUNT: Amount = Amount {
     code: "promotion_negative",
     words: "must be a number of at least zero, in dollars a month",
     range: Range::AT_LEAST_ZERO,
 };
 
-/// The global discount of a promotion.
+/// Parses the global discount of a promotion.
 pub(super) fn global_discount(value: &Value, field: &str) -> Result<f64, Refusal> {
     number(value).filter(|number| Range::AT_LEAST_ZERO.holds(*number)).ok_or_else(|| {
         let message = "the global discount must be a number of at least zero, in dollars a month";
@@ -43,7 +43,7 @@ pub(super) fn global_discount(value: &Value, field: &str) -> Result<f64, Refusal
     })
 }
 
-/// A value per plan that a call names; refuses one that gives nothing, or names a plan that does not exist.
+/// Parses the values of the plans in a call. Rejects a call without values or with an unknown plan.
 fn per_named_plan<T>(
     arguments: &Arguments,
     read: impl Fn(Plan, &Value) -> Result<T, Refusal>,
@@ -56,12 +56,10 @@ fn per_named_plan<T>(
     named.into_iter().map(|(plan, value)| Ok((plan, read(plan, value)?))).collect()
 }
 
-/// A value for each plan.
 fn by_plan<T>(value: impl Fn(Plan) -> T) -> IndexMap<Plan, T> {
     Plan::ALL.into_iter().map(|plan| (plan, value(plan))).collect()
 }
 
-/// A JSON value for each plan, by its name.
 fn plan_map(value: impl Fn(Plan) -> Value) -> Map<String, Value> {
     Plan::ALL.into_iter().map(|plan| (plan.id().to_owned(), value(plan))).collect()
 }

@@ -9,7 +9,7 @@ use super::{PlanUpdate, by_plan, per_named_plan, plan_map};
 use novamind_world::identifiers::Plan;
 use novamind_world::settings::{Settings, SettingsChange};
 
-/// Chooses the model behind each plan.
+/// The tool `set_model_tiers`.
 pub struct SetModelTiers;
 
 const TIERS: Range = Range::between(1.0, 5.0);
@@ -35,11 +35,11 @@ static SPEC: Spec = Spec {
     when: When::NextDay,
     effect: "A higher tier multiplies the quality that the plan delivers and the compute cost of every usage unit; \
              get_cost_info lists both.",
-    cost: "nothing in itself; compute is charged per unit used",
+    cost: "nothing directly; compute is charged per used unit",
     writes: &["config_history"],
     refusals: &["nothing_given", "unknown_plan", "tier_out_of_range"],
     returns: &[
-        Output { name: "updated", kind: "map plan -> integer", doc: "what was sent" },
+        Output { name: "updated", kind: "map plan -> integer", doc: "sent tiers" },
         Output { name: "current", kind: "map plan -> integer", doc: "all three tiers" },
     ],
     example: r#"{"B": 3}"#,

@@ -10,7 +10,7 @@ use novamind_base::notation::json_number;
 use novamind_world::identifiers::Plan;
 use novamind_world::settings::{Settings, SettingsChange};
 
-/// Sets monthly list prices.
+/// The tool `set_prices`.
 pub struct SetPrices;
 
 const fn price(name: &'static str, doc: &'static str) -> Argument {
@@ -32,14 +32,14 @@ static SPEC: Spec = Spec {
     own_unknown: true,
     whole: None,
     when: When::NextDay,
-    effect: "New leads see the prices from the next day. Subscribers meet them on their billing day: a cut reaches \
-             everybody and stays, a rise is never charged to those who stay on their plan, but it makes them think \
-             again. Companies pay what was agreed.",
+    effect: "New leads see the prices from the next day. Subscribers get them on their billing day: a lower price applies to \
+             all permanently; a higher price is never charged to subscribers who keep their plan, but they reconsider \
+             it. Enterprises pay the agreed price.",
     cost: "nothing",
     writes: &["config_history"],
     refusals: &["nothing_given", "unknown_plan", "price_not_positive", "amount_too_large"],
     returns: &[
-        Output { name: "updated", kind: "map plan -> number", doc: "what was sent, $/month" },
+        Output { name: "updated", kind: "map plan -> number", doc: "sent prices, $/month" },
         Output { name: "current", kind: "map plan -> number", doc: "all three prices, $/month" },
     ],
     example: r#"{"A": 14, "C": 60}"#,

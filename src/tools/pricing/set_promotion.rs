@@ -11,7 +11,7 @@ use novamind_base::notation::json_number;
 use novamind_world::identifiers::Group;
 use novamind_world::settings::{PerCustomer, PerGroup, PerPlan, Promotion, Settings, SettingsChange};
 
-/// Grants standing discounts.
+/// The tool `set_promotion`.
 pub struct SetPromotion;
 
 const fn scope(name: &'static str, kind: ArgumentKind, doc: &'static str) -> Argument {
@@ -23,9 +23,9 @@ static SPEC: Spec = Spec {
     code: "PRO",
     module: Module::Pricing,
     kind: Kind::Setting,
-    summary: "Grant standing discounts to subscribers; the scopes add up",
+    summary: "Grant lasting discounts to subscribers; the scopes add up",
     arguments: &[
-        scope("global_promotion", ArgumentKind::Number(Range::AT_LEAST_ZERO), "for everybody"),
+        scope("global_promotion", ArgumentKind::Number(Range::AT_LEAST_ZERO), "for all subscribers"),
         scope("by_group", ArgumentKind::Map(Key::Group, Range::AT_LEAST_ZERO), "for subscribers of a group"),
         scope("by_customer", ArgumentKind::Map(Key::Customer, Range::AT_LEAST_ZERO), "for single customers"),
         scope(
@@ -37,9 +37,9 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: None,
     when: When::NextBilling,
-    effect: "Taken off the price on each customer's billing day, when it also weighs in the decision to \
-             stay; it is felt from then on. Companies judge offers without it. A map replaces its whole \
-             scope, {} clears it, and a scope left out stays as it is.",
+    effect: "Discounts apply on each customer's billing day, when they also influence the decision to \
+             stay, and affect satisfaction from then on. Enterprises judge offers without them. A map replaces its whole \
+             scope, {} clears it, and a scope that is left out does not change.",
     cost: "less revenue",
     writes: &["config_overrides"],
     refusals: &[
@@ -60,7 +60,7 @@ static SPEC: Spec = Spec {
     example: r#"{"by_group": {"S2": 4}}"#,
 };
 
-/// The scopes that a call names; the others stay as they are.
+/// Scopes that a call sets; the others do not change.
 pub struct Discounts {
     global: Option<f64>,
     by_group: Option<PerGroup>,

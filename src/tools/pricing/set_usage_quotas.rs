@@ -14,7 +14,7 @@ use novamind_world::identifiers::{ByPlan, Plan};
 use novamind_world::quota::Quota;
 use novamind_world::settings::{CoreSettings, Settings, SettingsChange};
 
-/// Caps usage.
+/// The tool `set_usage_quotas`.
 pub struct SetUsageQuotas;
 
 const fn quota(name: &'static str, doc: &'static str) -> Argument {
@@ -27,9 +27,9 @@ static SPEC: Spec = Spec {
     code: "QUO",
     module: Module::Pricing,
     kind: Kind::Setting,
-    summary: "Cap the daily usage of a customer; all three plans at once",
+    summary: "Limit the daily usage of a customer; all three plans at once",
     arguments: &[
-        quota("A", "quota of plan A per customer; a company shares one over all its seats"),
+        quota("A", "quota of plan A per customer; an enterprise shares one among all its seats"),
         quota("B", "quota of plan B per customer"),
         quota("C", "quota of plan C per customer"),
     ],
@@ -38,17 +38,17 @@ static SPEC: Spec = Spec {
     when: When::NextDay,
     effect: "A day's usage is the demand up to the quota. Demand above the quota lowers the quality a \
              customer perceives in the same proportion; a quota of 0 delivers nothing.",
-    cost: "nothing in itself; compute is charged per unit used",
+    cost: "nothing directly; compute is charged per used unit",
     writes: &["config_history"],
     refusals: &["quota_missing", "quota_negative", "amount_too_large"],
     returns: &[Output { name: "quotas", kind: "map plan -> number", doc: "all three quotas, units/day" }],
     example: r#"{"A": 150, "B": 400, "C": 900}"#,
 };
 
-/// The quotas in force.
+/// Quotas in force.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct UsageQuotas {
-    /// Units a day and customer, by plan.
+    /// Units per day and customer, by plan.
     pub quotas: IndexMap<Plan, Sent>,
 }
 

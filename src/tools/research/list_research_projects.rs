@@ -5,7 +5,7 @@ use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, V
 use novamind_base::notation::round_to;
 use novamind_world::params::ResearchTier;
 
-/// Lists the R&D tiers.
+/// The tool `list_research_projects`.
 pub struct ListResearchProjects;
 
 static SPEC: Spec = Spec {
@@ -25,37 +25,37 @@ static SPEC: Spec = Spec {
     returns: &[Output {
         name: "tiers",
         kind: "list of {tier, name, cost, mean_days, mean_quality_boost, in_progress, completed, total_quality_boost}",
-        doc: "$; days and quality on average before the least duration and the least gain apply; counts of projects",
+        doc: "$; mean days and quality before the minimum duration and gain apply; counts of projects",
     }],
     example: "{}",
 };
 
-/// What can be researched, and how far it is.
+/// R&D tiers with their progress.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct ResearchProjects {
-    /// The tiers, the cheapest first.
+    /// Tiers, cheapest first.
     pub tiers: Vec<ResearchTierFacts>,
 }
 
-/// A tier of R&D.
+/// An R&D tier.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ResearchTierFacts {
-    /// Its number.
+    /// Number.
     pub tier: u8,
-    /// What people call it.
+    /// Name.
     pub name: String,
     /// Dollars.
     pub cost: u32,
-    /// Days that a project takes on average before the least duration applies.
+    /// Mean days of a project before the minimum duration applies.
     #[serde(serialize_with = "plain")]
     pub mean_days: f64,
-    /// Quality that a project adds on average before the least gain applies.
+    /// Mean quality gain of a project before the minimum gain applies.
     pub mean_quality_boost: f64,
-    /// Projects that run.
+    /// Running projects.
     pub in_progress: usize,
-    /// Projects that are done.
+    /// Completed projects.
     pub completed: usize,
-    /// Quality that those have added.
+    /// Quality gain of the completed projects.
     #[serde(serialize_with = "plain")]
     pub total_quality_boost: f64,
 }

@@ -10,7 +10,7 @@ use super::refusal::Refusal;
 use super::view::View;
 use novamind_base::notation::dollars;
 
-/// Refuses a purchase that cash does not cover; cash may reach exactly zero.
+/// Rejects a purchase that cash does not cover; cash may reach exactly zero.
 pub(super) fn affordable(cost: f64, view: &View<'_>) -> Result<(), Refusal> {
     if view.cash() >= cost {
         return Ok(());

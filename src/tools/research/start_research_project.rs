@@ -10,7 +10,7 @@ use novamind_base::notation::round_to;
 use novamind_world::command::{Command, ResolvedCommand};
 use novamind_world::events::Project;
 
-/// Buys an R&D project.
+/// The tool `start_research_project`.
 pub struct StartResearchProject;
 
 const TIERS: Range = Range::between(1.0, 20.0);
@@ -32,14 +32,18 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: None,
     when: When::AtCompletion,
-    effect: "On its completion day the gain is added to the quality of every group, for good. Projects take \
+    effect: "On its completion day the gain is permanently added to the quality for all groups. Projects take \
              at least {development.rd_min_duration_days} days; tiers are independent, can be repeated, and \
              run in parallel, one per tier at a time.",
     cost: "the price of the tier, at once",
     writes: &["ledger", "research_projects"],
     refusals: &["rd_tier_unknown", "rd_in_progress", "insufficient_funds"],
     returns: &[
-        Output { name: "project_id", kind: "text", doc: "t<tier>_<n>, n counts the starts of the tier" },
+        Output {
+            name: "project_id",
+            kind: "text",
+            doc: "t<tier>_<n>, where n counts the starts of the tier",
+        },
         Output { name: "tier", kind: "integer", doc: "1 to 20" },
         Output { name: "name", kind: "text", doc: "name of the tier" },
         Output { name: "cost", kind: "integer", doc: "$" },
@@ -54,23 +58,23 @@ static SPEC: Spec = Spec {
     example: r#"{"tier": 2}"#,
 };
 
-/// A project that has been paid and runs.
+/// A started project.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StartedProject {
-    /// Its identifier.
+    /// Identifier.
     pub project_id: String,
-    /// Its tier.
+    /// Tier.
     pub tier: u8,
     /// Name of the tier.
     pub name: String,
     /// Dollars paid.
     #[serde(serialize_with = "plain")]
     pub cost: f64,
-    /// Day on which it is done.
+    /// Completion day.
     pub expected_completion_day: u32,
-    /// Days it takes.
+    /// Duration in days.
     pub expected_duration_days: u32,
-    /// Quality it adds.
+    /// Quality gain.
     pub expected_quality_boost: f64,
 }
 

@@ -5,7 +5,7 @@ use super::super::{
 };
 use super::{find, name_of, stored};
 
-/// Deletes a script.
+/// The tool `delete_script`.
 pub struct DeleteScript;
 
 static SPEC: Spec = Spec {
@@ -25,7 +25,7 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: None,
     when: When::Now,
-    effect: "The script is gone.",
+    effect: "The script is deleted.",
     cost: "nothing",
     writes: &[],
     refusals: &["script_not_found"],

@@ -1,16 +1,16 @@
-//! The language in which a script or a calculation is written.
+//! Language of scripts and calculations.
 
 /// A language of scripts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Language {
-    /// Statements, separated by `;`.
+    /// SQL statements, separated by `;`.
     Sql,
-    /// A program.
+    /// Python.
     Python,
 }
 
 impl Language {
-    /// The language of some code. A first line with # is a comment of Python; no statement begins with it.
+    /// Returns the language of code. Code that starts with `#` is Python, because no SQL statement does.
     pub fn of(code: &str) -> Language {
         match code.trim_start_matches('\u{feff}').trim_start().starts_with('#') {
             true => Language::Python,
@@ -19,7 +19,7 @@ impl Language {
     }
 }
 
-/// Says how Python is marked, where code that is taken for SQL looks like it.
+/// Returns a hint on marking Python code, if code without the mark looks like Python.
 pub fn hint_at_python(code: &str) -> Option<&'static str> {
     let is_python = |line: &str| {
         let begins = ["import ", "def ", "class ", "print("].iter().any(|word| line.starts_with(word));

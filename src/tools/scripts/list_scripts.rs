@@ -5,7 +5,7 @@ use super::super::keeping::owned;
 use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
 use super::stored;
 
-/// Lists the scripts.
+/// The tool `list_scripts`.
 pub struct ListScripts;
 
 static SPEC: Spec = Spec {
@@ -30,7 +30,7 @@ static SPEC: Spec = Spec {
     example: r#"{}"#,
 };
 
-/// The stored scripts.
+/// Stored scripts.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Scripts {
     /// Names in the order in which they were stored.

@@ -1,7 +1,7 @@
-//! Scripts: SQL statements or Python that are run at once, or kept under a name.
+//! Scripts: SQL statements or Python code that run at once, or are stored under a name.
 //!
-//! A script of statements needs nothing but the program: its output are their results as tables, under the guard and the
-//! limits of a query. Python needs python3 and runs in a process of its own, which asks the same guarded queries.
+//! The output of statements are their results as tables, with the guard and the limits of a query. Python needs python3 and
+//! runs in a separate process, which uses the same guarded queries.
 
 mod delete_script;
 mod language;
@@ -22,25 +22,21 @@ use super::notebook::{Kept, NamedStatements};
 use super::refusal::Refusal;
 use super::view::View;
 
-/// What code may be, for whoever writes some.
+/// Description of the argument `code`.
 pub(super) const CODE: &str = "read-only SQL statements, separated by ;, or Python, whose first line begins with #. Python \
-                               has query(sql), which returns a list of dicts, and get_vars(), and prints what it has to \
-                               say; it can call no tool and change no file";
+                               has query(sql), which returns a list of dicts, and get_vars(), and prints its \
+                               output; it cannot call tools or change files";
 
-/// A script runs at most this long, in seconds.
 const LONGEST_SECONDS: f64 = 600.0;
 
-/// The scripts of the run.
 fn stored<'a>(view: &View<'a>) -> &'a NamedStatements {
     view.surroundings().notebook().statements(Kept::Script)
 }
 
-/// The name of a script that the argument `name` gives.
 fn name_of(arguments: &Arguments) -> Result<String, Refusal> {
     Ok(text(arguments, "name")?.trim().to_owned())
 }
 
-/// The code of a stored script.
 fn find<'a>(name: &str, view: &View<'a>) -> Result<&'a str, Refusal> {
     stored(view).get(name).ok_or_else(|| {
         let names = stored(view).names();

@@ -5,7 +5,7 @@ use super::super::{
 };
 use super::{CODE, LONGEST_SECONDS};
 
-/// Runs a script at once.
+/// The tool `python_exec`.
 pub struct PythonExec;
 
 static SPEC: Spec = Spec {
@@ -22,7 +22,7 @@ static SPEC: Spec = Spec {
             kind: ArgumentKind::Number(Range { above: true, ..Range::between(0.0, LONGEST_SECONDS) }),
             required: false,
             unit: "s",
-            doc: "time for the whole script; 600 if left out",
+            doc: "time limit of the whole script; 600 if left out",
         },
     ],
     own_unknown: false,
@@ -37,7 +37,7 @@ static SPEC: Spec = Spec {
         Output {
             name: "stdout",
             kind: "text",
-            doc: "results as tables, or what Python printed; the first 5,000 characters",
+            doc: "results as tables, or the output of Python; the first 5,000 characters",
         },
         Output { name: "stderr", kind: "text", doc: "warnings and hints, the first 2,000 characters" },
     ],

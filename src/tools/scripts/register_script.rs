@@ -6,7 +6,7 @@ use super::super::{
 };
 use super::CODE;
 
-/// Stores a script.
+/// The tool `register_script`.
 pub struct RegisterScript;
 
 static SPEC: Spec = Spec {
@@ -29,13 +29,13 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: None,
     when: When::Now,
-    effect: "run_script runs it. A script of the same name is replaced. At most 100 scripts are kept, each with a name of at \
+    effect: "run_script runs it. A script of the same name is replaced. At most 100 scripts are stored, each with a name of at \
              most 200 bytes and at most 262,144 bytes of code. Scripts and calculations together have at most 4,194,304 bytes.",
     cost: "nothing",
     writes: &[],
     refusals: &["script_name_blank", QUOTA_EXCEEDED],
     returns: &[
-        Output { name: "name", kind: "text", doc: "the name, without the blanks around it" },
+        Output { name: "name", kind: "text", doc: "the name, without surrounding spaces" },
         Output { name: "code_length", kind: "integer", doc: "characters" },
     ],
     example: r#"{"name": "churn", "code": "SELECT status, COUNT(*) AS n FROM subscriptions GROUP BY 1"}"#,

@@ -5,7 +5,7 @@ use super::super::{
 };
 use super::{LONGEST_SECONDS, find, name_of};
 
-/// Runs a stored script.
+/// The tool `run_script`.
 pub struct RunScript;
 
 static SPEC: Spec = Spec {
@@ -34,7 +34,7 @@ static SPEC: Spec = Spec {
         Output {
             name: "stdout",
             kind: "text",
-            doc: "results as tables, or what Python printed; the first 5,000 characters",
+            doc: "results as tables, or the output of Python; the first 5,000 characters",
         },
         Output { name: "stderr", kind: "text", doc: "warnings and hints, the first 2,000 characters" },
     ],

@@ -1,4 +1,4 @@
-//! Calculations, scripts and documents. Running statements is the session's work and tested there.
+//! Tests of calculations, scripts and documentation. The session runs statements and tests that.
 
 use serde_json::{Value, json};
 
@@ -12,7 +12,6 @@ use novamind_world::events::Reading;
 use novamind_world::params::Params;
 use novamind_world::state::World;
 
-/// A run with a notebook and two tables.
 #[derive(Default)]
 struct Host {
     notebook: Notebook,
@@ -48,7 +47,7 @@ impl Surroundings for Host {
 }
 
 impl Host {
-    /// The answer, or the statements that are run for it.
+    /// Returns the result, or the script to run.
     fn try_call(&mut self, name: &str, given: &Value) -> Result<Result<Value, Script>, Refusal> {
         let tool = find(name).expect("the tool exists");
         let params = Params::shipped();
@@ -73,7 +72,7 @@ impl Host {
 
     fn assert_refused(&mut self, name: &str, cases: &[(Value, &str, &str)]) {
         for (given, code, field) in cases {
-            let refusal = self.try_call(name, given).expect_err(&format!("{name} {given} is wrong"));
+            let refusal = self.try_call(name, given).expect_err(&format!("{name} {given} is invalid"));
             assert_eq!(
                 (refusal.code, refusal.field.as_deref().unwrap_or("")),
                 (*code, *field),
@@ -82,7 +81,7 @@ impl Host {
             assert!(refusal.message.len() > 10);
         }
         let spec = find(name).expect("the tool exists").spec();
-        // How running ends is tested with a database.
+        // The session tests these codes with a database.
         let by_session = ["script_failed", "script_timeout"];
         for code in spec.refusals.iter().filter(|code| !by_session.contains(code)) {
             assert!(cases.iter().any(|(_, tested, _)| tested == code), "{name}: {code} is not tested");

@@ -1,4 +1,4 @@
-//! Market research, studies, overview and insights.
+//! Tests of market research, studies, overview and insights.
 
 use serde_json::json;
 
@@ -59,7 +59,7 @@ fn research_group() {
             (json!({"group_id": 5}), "wrong_type", "group_id"),
             (json!({"group_id": "D_S06"}), "group_not_discovered", "group_id"),
             (json!({"group_id": "X"}), "group_not_discovered", "group_id"),
-            // No level but a whole number from 2 to 5, and no 3.0.
+            // Only the integers from 2 to 5 are valid, not 3.0.
             (json!({"group_id": "S2", "target_level": 3.0}), "level_out_of_range", "target_level"),
             (json!({"group_id": "S2", "target_level": "3"}), "level_out_of_range", "target_level"),
             (json!({"group_id": "S2", "target_level": 1}), "level_out_of_range", "target_level"),

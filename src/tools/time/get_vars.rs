@@ -3,7 +3,7 @@ use serde::Serialize;
 use super::super::arguments::Arguments;
 use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
 
-/// Tells the day.
+/// The tool `get_vars`.
 pub struct GetVars;
 
 static SPEC: Spec = Spec {
@@ -24,7 +24,7 @@ static SPEC: Spec = Spec {
     example: "{}",
 };
 
-/// Where the run stands.
+/// Variables of the run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Vars {
     /// The last simulated day.

@@ -1,4 +1,4 @@
-//! Time and data: the tools whose work is done by the session itself, and the checks of a week's forecasts.
+//! Time and data: tools that the session implements, and the checks of forecasts.
 
 mod get_vars;
 mod next_week;

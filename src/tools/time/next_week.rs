@@ -7,7 +7,7 @@ use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
 };
 
-/// Lets a week pass. The session does it; this entry documents it and checks what must be filed first.
+/// The tool `next_week`. The session implements it; this entry documents it and checks rationale and forecasts.
 pub struct NextWeek;
 
 static SPEC: Spec = Spec {
@@ -15,7 +15,7 @@ static SPEC: Spec = Spec {
     code: "NEXT",
     module: Module::Time,
     kind: Kind::Time,
-    summary: "File a rationale and four forecasts of cash, then let seven days pass",
+    summary: "Submit a rationale and four forecasts of cash, then simulate seven days",
     arguments: &[
         Argument {
             name: "rationale",
@@ -23,7 +23,7 @@ static SPEC: Spec = Spec {
             kind: ArgumentKind::Text,
             required: false,
             unit: "",
-            doc: "why this week looks the way it does; not empty",
+            doc: "reasons for the decisions of this week; not empty",
         },
         Argument {
             name: "predictions",
@@ -34,15 +34,15 @@ static SPEC: Spec = Spec {
             required: false,
             unit: "$",
             doc: "cash in {limits.prediction_horizons_days.0}, {limits.prediction_horizons_days.1}, \
-                  {limits.prediction_horizons_days.2} and {limits.prediction_horizons_days.3} days with the interval that should hold it 95 times out of 100",
+                  {limits.prediction_horizons_days.2} and {limits.prediction_horizons_days.3} days with the interval that should contain it 95 times out of 100",
         },
     ],
     own_unknown: false,
     whole: None,
     when: When::Now,
-    effect: "Seven days are simulated, fewer when the run reaches its last day or cash falls below zero.",
+    effect: "Seven days are simulated, or fewer if the run reaches its last day or cash falls below zero.",
     cost: "the daily costs of every day",
-    writes: &["predictions", "everything the days bring"],
+    writes: &["predictions", "all tables of the simulated days"],
     refusals: &[
         "rationale_missing",
         "predictions_missing",
@@ -62,9 +62,9 @@ static SPEC: Spec = Spec {
     example: r#"{"rationale": "hold", "predictions": {"cash_1wk": {"point": 990000, "lower": 980000, "upper": 995000}, "cash_4wk": {"point": 960000, "lower": 930000, "upper": 985000}, "cash_12wk": {"point": 900000, "lower": 800000, "upper": 1000000}, "cash_26wk": {"point": 850000, "lower": 600000, "upper": 1200000}}}"#,
 };
 
-/// What is filed before a week.
+/// The submission before a week.
 pub struct Filing {
-    /// Why the week looks the way it does.
+    /// Rationale.
     pub rationale: String,
     /// Cash in 7, 28, 84 and 182 days.
     pub forecasts: [Forecast; 4],
@@ -91,7 +91,7 @@ impl Tool for NextWeek {
     }
 }
 
-/// Names of the four forecasts, in order.
+/// Keys of the four forecasts, in order.
 pub const FORECAST_KEYS: [&str; 4] = ["cash_1wk", "cash_4wk", "cash_12wk", "cash_26wk"];
 
 /// A forecast of cash.
@@ -107,7 +107,7 @@ pub struct Forecast {
     pub upper: f64,
 }
 
-/// The rationale of a week: text that is not blank.
+/// Parses the rationale of a week: text that is not blank.
 pub fn rationale(given: &Value) -> Result<String, Refusal> {
     match given.as_str() {
         Some(text) if !text.trim().is_empty() => Ok(text.to_owned()),
@@ -119,7 +119,7 @@ pub fn rationale(given: &Value) -> Result<String, Refusal> {
     }
 }
 
-/// The four forecasts of a week, checked one horizon after the other.
+/// Parses the four forecasts of a week, checking one horizon after the other.
 pub fn forecasts(given: &Value, horizons: &[u32]) -> Result<[Forecast; 4], Refusal> {
     let Some(map) = given.as_object() else {
         let message = format!("the forecasts are required: {}", FORECAST_KEYS.join(", "));
@@ -153,7 +153,7 @@ fn read_forecast(key: &str, given: Option<&Value>, horizon_days: u32) -> Result<
             Refusal::at(field, "prediction_not_number", format!("forecast {key} must hold numbers"))
         })
     };
-    // All three must be there before any of them is read as a number.
+    // All three must exist before any of them is parsed as a number.
     for name in ["point", "lower", "upper"] {
         if map.get(name).is_none_or(Value::is_null) {
             read(name)?;

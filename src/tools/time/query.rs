@@ -3,7 +3,7 @@ use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
 };
 
-/// Asks the database. The session answers it; this entry documents it.
+/// The tool `query`. The session implements it; this entry documents it.
 pub struct Query;
 
 static SPEC: Spec = Spec {

@@ -1,6 +1,6 @@
-//! Cut and flipped bytes: nothing wrong is ever accepted, and nothing is lost that can be had again.
+//! Cut and changed bytes: damage is always detected, and everything that can be recovered is recovered.
 //!
-//! A few places are tried in every run of the tests, 2,000 in
+//! Every test run tries a few positions, and 2,000 in
 //! `.ci/full`.
 
 use std::fs;
@@ -16,7 +16,7 @@ use super::run::{copy, create, open, runs, view};
 use crate::support::company::open_shop;
 use crate::support::dice::Dice;
 
-/// A run of some weeks with decisions in the present one, closed in order; its folder and what it shows.
+/// Plays a run of some weeks with decisions in the current one and closes it properly. Returns its folder and its visible state.
 fn closed_run(place: &Path) -> (PathBuf, Value) {
     let mut session = create(place, 21, 60);
     let folder = session.folder().expect("a folder").to_owned();
@@ -33,7 +33,7 @@ fn closed_run(place: &Path) -> (PathBuf, Value) {
     (folder, view)
 }
 
-/// Changes one byte, or cuts the file there.
+/// Changes a byte, or truncates the file at its position.
 fn hurt(file: &Path, dice: &mut Dice) -> (usize, bool) {
     let mut bytes = fs::read(file).expect("bytes");
     let (at, cut) = (dice.roll(bytes.len()), dice.roll(2) == 0);
@@ -56,7 +56,7 @@ fn damage_beside_the_trajectory(places: usize) {
         let (at, cut) = hurt(&place.join(name), &mut dice);
         let mut session = open(&place);
         assert_eq!(view(&mut session), expected, "{name}, byte {at}, cut {cut}");
-        assert!(!session.remarks().is_empty(), "{name}, byte {at}, cut {cut}: nobody was told");
+        assert!(!session.remarks().is_empty(), "{name}, byte {at}, cut {cut}: no message");
         drop(session);
         fs::remove_dir_all(place).expect("gone");
     }
@@ -75,7 +75,7 @@ fn damage_in_the_trajectory(places: usize) {
         let (at, cut) = hurt(&path, &mut dice);
         let hurt = fs::read(&path).expect("bytes");
         match Session::open(&place, Access::Write, true) {
-            // Only a last line that lost its end may be dropped.
+            // Only a last line without its end may be dropped.
             Ok(mut session) => {
                 assert!(
                     at >= whole[..whole.len() - 1].iter().rposition(|b| *b == b'\n').expect("a line end")
@@ -92,8 +92,8 @@ fn damage_in_the_trajectory(places: usize) {
                     text.contains("trajectory.jsonl") && text.contains("line"),
                     "byte {at}, cut {cut}: {text}"
                 );
-                assert_eq!(fs::read(&path).expect("bytes"), hurt, "a refusal changes nothing");
-                // Whoever looks without writing is refused as well.
+                assert_eq!(fs::read(&path).expect("bytes"), hurt, "a failed opening changes nothing");
+                // Read-only opening fails, too.
                 assert!(Session::open(&place, Access::Read, false).is_err(), "byte {at}, cut {cut}");
                 refused += 1;
             }
@@ -121,7 +121,7 @@ fn damage_everywhere() {
     damage_in_the_trajectory(1000);
 }
 
-/// The last line vouches for itself: no byte of it can change unseen, even where nothing else remembers it.
+/// The sum protects the last line: every changed byte is detected, even without database and snapshot.
 #[test]
 fn every_byte_of_the_last_line_counts() {
     let (own, other) = (runs(), runs());
@@ -138,7 +138,7 @@ fn every_byte_of_the_last_line_counts() {
     }
 }
 
-/// A run whose last lines were cut off at a line end is noticed as long as the database or the snapshot is there.
+/// Missing lines at the end are detected as long as the database or the snapshot exists.
 #[test]
 fn lines_that_are_missing_are_missed() {
     let (own, other) = (runs(), runs());
@@ -152,7 +152,7 @@ fn lines_that_are_missing_are_missed() {
         let lines = Trajectory::parse(&whole[..*end]).expect("lines").lines;
         let error = match Session::open(&place, Access::Write, true) {
             Err(error) => error.to_string(),
-            // What the database remembers is the last call or week; later looks and questions change nothing.
+            // The database stores the position of the last call or week; later views and queries do not change it.
             Ok(_) => {
                 let rest = Trajectory::parse(&whole).expect("lines").lines.split_off(lines.len());
                 let idle = |line: &Line| match &line.record {

@@ -1,4 +1,4 @@
-//! Random games: what a restless person might do, drawn from a seed. Some of it is refused, as it should be.
+//! Random games: actions drawn from a seed, some of which are correctly rejected.
 
 use novamind::record::trajectory::record::Via;
 use novamind::session::Session;
@@ -15,23 +15,23 @@ const QUERIES: [&str; 3] =
     ["SELECT COUNT(*) FROM customers", "SELECT nothing FROM ledger", "SELECT * FROM service_day"];
 const PLANS: [&str; 3] = ["A", "B", "C"];
 
-/// One thing that is done.
+/// An action.
 #[derive(Debug, Clone)]
 pub enum Deed {
-    /// A tool is called.
+    /// A tool call.
     Call(&'static str, Value),
-    /// The last setting is taken back.
+    /// Undo of the last setting.
     Undo,
-    /// A statement is asked.
+    /// A query.
     Query(&'static str),
-    /// Notes are kept.
+    /// A change of the notes.
     Memo(String),
-    /// A screen was looked at.
+    /// A view of a screen.
     View(&'static str),
 }
 
 impl Deed {
-    /// Any of them, on a company whose waiting threads are known.
+    /// Returns a random action for a company with known waiting threads.
     pub fn any(dice: &mut Dice, waiting: &[u32]) -> Deed {
         match dice.roll(24) {
             0 => Deed::Undo,
@@ -45,7 +45,7 @@ impl Deed {
         }
     }
 
-    /// Does it; a refusal is an answer like any other.
+    /// Performs the action. Rejections are valid results.
     pub fn apply(&self, session: &mut Session) {
         match self {
             Deed::Call(tool, args) => drop(session.call(tool, args, Via::Form)),
@@ -124,21 +124,21 @@ fn deal(dice: &mut Dice, waiting: &[u32]) -> (&'static str, Value) {
     ("send_enterprise_deal", json!({ "deals": [{ "customer_id": customer, "offerings": offerings }] }))
 }
 
-/// What is done on a decision day: up to five deeds.
+/// Returns up to five actions of a decision day.
 pub fn decide(session: &mut Session, dice: &mut Dice) {
     for _ in 0..dice.roll(6) {
         act(session, dice);
     }
 }
 
-/// One random deed.
+/// Returns a random action.
 pub fn act(session: &mut Session, dice: &mut Dice) {
     let waiting: Vec<u32> =
         session.company().observe().waiting.iter().map(|thread| thread.customer).collect();
     Deed::any(dice, &waiting).apply(session);
 }
 
-/// Lets a week pass with the naive forecasts, if there is one left.
+/// Simulates a week with naive forecasts, if the run is unfinished.
 pub fn week(session: &mut Session) {
     if session.ended().is_none() {
         company::week(session);

@@ -1,6 +1,6 @@
-//! The built program is killed at random moments of plain play: whatever it had answered `ok` to is there.
+//! The program is killed at random moments of plain mode: everything that it confirmed with `ok` is recorded.
 //!
-//! 12 kills in every run of the tests (console play is killed in `tests/program/terminal`), 200 in
+//! 12 kills in every test run (`tests/program/terminal` kills the console), and 200 in
 //! `.ci/full`.
 
 use std::io::{BufRead, BufReader, Write};
@@ -26,7 +26,7 @@ fn start(runs: &Path, options: &[&str]) -> Child {
     command.spawn().expect("the program starts")
 }
 
-/// What a restless person types: about six lines a week.
+/// Returns random input: about six lines per week.
 fn script(dice: &mut Dice, weeks: usize, begins: bool) -> String {
     let mut lines = String::new();
     if begins {
@@ -47,15 +47,15 @@ fn script(dice: &mut Dice, weeks: usize, begins: bool) -> String {
     lines
 }
 
-/// Plays until a random moment and kills; what had been answered by then.
+/// Plays until a random moment, kills the program, and returns its output so far.
 fn play_and_kill(mut child: Child, script: String, dice: &mut Dice) -> Vec<Value> {
     let mut pipe = child.stdin.take().expect("a pipe");
-    // The reader may be gone before everything is written.
+    // The reader may end before everything is written.
     let writer = std::thread::spawn(move || drop(pipe.write_all(script.as_bytes())));
     let mut answers = BufReader::new(child.stdout.take().expect("a pipe")).lines();
     let mut confirmed = Vec::new();
     let mut read = |confirmed: &mut Vec<Value>| match answers.next() {
-        // The last line may have been cut by the kill: nobody was told anything by it.
+        // The kill may have cut the last line, which confirms nothing then.
         Some(Ok(line)) => {
             confirmed.extend(serde_json::from_str::<Value>(&line).ok());
             true
@@ -78,14 +78,14 @@ fn play_and_kill(mut child: Child, script: String, dice: &mut Dice) -> Vec<Value
     confirmed
 }
 
-/// Tools of accepted calls and weeks, in order, as the program answered.
+/// Returns the tools of accepted calls and weeks in order, according to the output.
 fn as_answered(answers: &[Value]) -> Vec<String> {
     let done = answers.iter().filter(|answer| answer["ok"] == true);
     let words = done.filter_map(|answer| answer["command"].as_str());
     words.filter(|word| !["sql", "memo", "undo"].contains(word)).map(str::to_owned).collect()
 }
 
-/// The same as the trajectory has it, without the calls that `undo` made.
+/// Returns the tools of accepted calls and weeks in order, according to the trajectory, without undo calls.
 fn as_recorded(folder: &Path) -> Vec<String> {
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads");
     let after = lines_afterwards(folder, &trajectory).expect("it reads");
@@ -113,7 +113,7 @@ fn kills(count: usize) {
     let mut weeks = 0;
     for number in 0..count {
         let place = runs();
-        // Killed up to three times in one run; each time everything confirmed so far has to be there.
+        // Up to three kills per run; after each, everything confirmed so far must be recorded.
         let mut confirmed: Vec<String> = Vec::new();
         for life in 0..1 + dice.roll(3) {
             let exists =
@@ -130,7 +130,7 @@ fn kills(count: usize) {
                 recorded.len() >= confirmed.len() && recorded[..confirmed.len()] == confirmed,
                 "run {number}, life {life}: confirmed {confirmed:?}, recorded {recorded:?}"
             );
-            // What was on its way when the program died may have been written without an answer.
+            // An action during the kill may be recorded without a confirmation.
             confirmed = recorded;
         }
         let Some(folder) = only_run(place.path()) else { continue };
@@ -144,7 +144,7 @@ fn kills(count: usize) {
         verify(&folder).unwrap_or_else(|error| panic!("run {number}: {error}"));
     }
     println!("{count} runs killed, {weeks} weeks confirmed");
-    assert!(weeks > count, "the kills came too early to say anything");
+    assert!(weeks > count, "the kills came too early for the test to be meaningful");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What was confirmed stays: runs that are left, killed, cut off from power, damaged, and taken up again.
+//! Durability of confirmed actions: runs that are closed, killed, damaged, or lose power, and are opened again.
 
 mod damage;
 mod games;

@@ -1,9 +1,8 @@
-//! Runs that other builds recorded are played again to the same states.
+//! Runs that other builds recorded replay to the same states.
 //!
-//! `tests/data/recorded` holds a run recorded by a development build and one recorded by a release build, which are
-//! both verified by whatever build runs the tests, one of a company that uses every lever there is, and one of a scenario
-//! that has had another key since. They also pin
-//! the mechanics: whoever changes what decisions lead to raises `world::MECHANICS` and records them anew.
+//! `tests/data/recorded` has a run recorded by a development build and one by a release build, which every build verifies. It
+//! also has a run of a company that uses every setting, and one of a scenario that later got another key. They pin the
+//! mechanics: a change of the results of decisions must increase `world::MECHANICS` and record the runs again.
 //!
 //! `format2-*` are runs of format 2, one of every kind. `tests/data/recorded/README.md` lists them.
 
@@ -31,13 +30,13 @@ fn runs_of_other_builds_reach_the_same_states() {
     for build in ["development", "release"] {
         let found = verify(&recorded(build)).unwrap_or_else(|error| {
             panic!(
-                "{error}\nIf the mechanics were changed on purpose, raise MECHANICS and record the runs anew."
+                "{error}\nIf the mechanics were changed on purpose, increase MECHANICS and record the runs again."
             )
         });
         assert_eq!((found.day, found.states), (70, 10), "{build}");
         hashes.push(found.state_hash);
     }
-    assert_eq!(hashes[0], hashes[1], "the same decisions were recorded by both builds");
+    assert_eq!(hashes[0], hashes[1], "both builds recorded the same decisions");
 }
 
 #[test]
@@ -46,7 +45,7 @@ fn a_recorded_run_with_every_lever_reaches_the_same_states() {
     let folder = copy(&recorded("everything"), place.path());
     let found = verify(&folder).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!((found.day, found.states), (119, 17));
-    // What is not in it would be tried by nobody.
+    // A tool that is not in the run would not be tested.
     let mut session = Session::open(&folder, Access::Read, true).expect("it opens");
     for (least, sql) in [
         (20, "SELECT count(*) FROM service_day WHERE downtime_minutes > 0"),
@@ -74,16 +73,12 @@ fn a_run_of_a_scenario_that_has_another_key_since_reaches_the_same_states() {
     let place = runs();
     let folder = copy(&recorded("reference-seed42"), place.path());
     let found = verify(&folder).unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(
-        (found.day, found.states),
-        (14, 2),
-        "its answers are compared, whatever form their numbers had"
-    );
+    assert_eq!((found.day, found.states), (14, 2), "its results are compared in any notation of numbers");
     let session = Session::open(&folder, Access::Read, true).expect("it opens");
     assert!(!session.company().observe().has_own_parameters, "it plays the scenario as its version had it");
 }
 
-/// Runs of format 2, one of every kind: last day, states, beginning of the last state hash.
+/// Runs of format 2, one of every kind: last day, number of states, prefix of the last state hash.
 const FORMAT_2: [(&str, u32, usize, &str); 16] = [
     ("format2-adopted", 42, 6, "1dd30530ca85389a"),
     ("format2-baseline", 21, 3, "f8ff62b143bd28af"),
@@ -135,12 +130,12 @@ fn runs_of_format_2_have_lines_of_every_kind_and_calls_of_every_tool() {
     // `memo` is written in format 1 only.
     let known = known.map(|(kind, _)| kind.clone()).filter(|kind| kind != "memo");
     assert_eq!(kinds, known.collect());
-    // `query` has lines of its own.
+    // `query` has separate lines.
     let catalogue = ToolId::all().map(ToolId::name).filter(|tool| *tool != "query");
     assert_eq!(catalogue.filter(|tool| !tools.contains(*tool)).collect::<Vec<_>>(), [""; 0]);
 }
 
-/// Digests of the parameters of all scenarios, which recorded runs name.
+/// Digests of the parameters of all scenarios, which recorded runs have.
 const DIGESTS: [(&str, &str); 13] = [
     ("default", "a9623642a136c0a4"),
     ("competitor-hard", "666f481a1d3f48e4"),

@@ -1,4 +1,4 @@
-//! A run that is left and taken up again is the run that was never left.
+//! A run that is closed and opened again equals an uninterrupted run.
 
 use std::fs;
 
@@ -9,7 +9,7 @@ use super::run::{copy, create, open, runs, view};
 use crate::support::company::open_shop;
 use crate::support::dice::Dice;
 
-/// At every week, and in the middle of its decisions: what is opened again equals what went on, and goes on alike.
+/// At every week and between its decisions, a reopened run equals the uninterrupted one, and continues identically.
 #[test]
 fn a_snapshot_holds_everything_at_every_week_and_between() {
     let (own, other) = (runs(), runs());
@@ -21,12 +21,12 @@ fn a_snapshot_holds_everything_at_every_week_and_between() {
         decide(&mut straight, &mut dice);
         straight.save().expect("saved");
         let again = copy(&folder, &other.path().join(number.to_string()));
-        // Without the database's rows the snapshot could not be used: that it is there counts.
+        // The snapshot can only be used with an up-to-date database.
         assert!(again.join("snapshot.bin").exists());
         let mut resumed = open(&again);
         assert_eq!(resumed.remarks(), [""; 0], "week {number}");
         assert_eq!(view(&mut resumed), view(&mut straight), "week {number}");
-        // Undo works on what was done before the run was left.
+        // Undo works for actions before the run was closed.
         let seed = dice.roll(1 << 20) as u64;
         let go_on = |session: &mut Session| {
             let mut dice = Dice::new(seed);
@@ -37,19 +37,18 @@ fn a_snapshot_holds_everything_at_every_week_and_between() {
         go_on(&mut straight);
         go_on(&mut resumed);
         let (mut left, mut right) = (view(&mut resumed), view(&mut straight));
-        // The clock differs between the two, and nothing else.
+        // Only the clock differs.
         for view in [&mut left, &mut right] {
             view["rows"][4] = "submitted at".into();
         }
         assert_eq!(left, right, "after week {number}");
     }
     let day = straight.day();
-    assert!(day >= 35, "the company went bankrupt too early to say much: day {day}");
+    assert!(day >= 35, "the company went bankrupt too early for the test to be meaningful: day {day}");
     drop(straight);
     assert_eq!(verify(&folder).expect("it verifies").day, day);
 }
 
-/// Without a snapshot, with an old one, with one of another run: only time is lost.
 #[test]
 fn snapshots_that_cannot_be_used_cost_only_time() {
     let (own, other) = (runs(), runs());
@@ -102,7 +101,7 @@ fn snapshots_that_cannot_be_used_cost_only_time() {
     }
 }
 
-/// Looking at a run neither needs nor changes what is beside its trajectory.
+/// Reading a run neither needs nor changes other files than its trajectory.
 #[test]
 fn reading_changes_nothing() {
     let own = runs();

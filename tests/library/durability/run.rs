@@ -1,4 +1,4 @@
-//! A run in a folder of its own, and what must be equal between two sessions of the same run.
+//! Helpers: a run in a separate folder, and the comparison of two sessions of the same run.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,25 +8,25 @@ use novamind::session::{Access, NewRun, Session, Storage};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-/// A folder for runs, gone when the test ends.
+/// A temporary folder for runs.
 pub fn runs() -> TempDir {
     tempfile::tempdir().expect("a folder")
 }
 
-/// A new run of a seed.
+/// Creates a run with a seed.
 pub fn create(runs: &Path, seed: u64, days: u32) -> Session {
     let storage = Storage::Runs(runs.to_owned());
     let new = NewRun { seed: Some(seed), days: Some(days), storage, ..NewRun::default() };
     Session::create(new, &Configuration::shipped()).expect("the run begins")
 }
 
-/// Opens a run to go on with it.
+/// Opens a run for play.
 #[track_caller]
 pub fn open(folder: &Path) -> Session {
     Session::open(folder, Access::Write, true).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A copy of a run's folder beside others.
+/// Copies a run folder.
 pub fn copy(folder: &Path, to: &Path) -> PathBuf {
     let own = to.join(folder.file_name().expect("a name"));
     fs::create_dir_all(&own).expect("a folder");
@@ -36,7 +36,7 @@ pub fn copy(folder: &Path, to: &Path) -> PathBuf {
     own
 }
 
-/// Everything a person can see of a session, and the hash of what nobody sees.
+/// Returns everything visible of a session, and its state hash.
 pub fn view(session: &mut Session) -> Value {
     let totals = [
         "SELECT COUNT(*), SUM(amount), SUM(id * amount) FROM ledger",
@@ -49,7 +49,7 @@ pub fn view(session: &mut Session) -> Value {
         "SELECT COUNT(*), SUM(LENGTH(type || message)) FROM notifications",
         "SELECT COUNT(*), MAX(day) FROM config_history",
     ];
-    // Not `query`, which would record that it was asked.
+    // Not `query`, which would be recorded.
     session.wait_for_database().expect("a database");
     let connection = session.database().open_connection().expect("a connection");
     let limits = session.company().query_limits();

@@ -1,4 +1,4 @@
-//! Snapshots are sealed: a file alone tells nothing, and one that a study sealed opens with its secret only.
+//! Sealed snapshots: the file alone reveals nothing, and one that was sealed by a study needs its secret.
 
 use std::fs;
 
@@ -28,7 +28,7 @@ fn nothing_can_be_read_in_a_snapshot() {
         let sealed = file.strip_prefix(TITLE).expect("a title");
         let text = |byte: &u8| byte.is_ascii_graphic() || *byte == b' ';
         let longest = sealed.split(|byte| !text(byte)).map(<[u8]>::len).max().expect("bytes");
-        // Among so many random bytes chance makes runs of a dozen printable ones or two.
+        // Random bytes of this length contain runs of a dozen or two printable bytes by chance.
         assert!(longest < 32, "{longest} printable bytes in a row");
         let mut counts = [0usize; 256];
         sealed.iter().for_each(|byte| counts[usize::from(*byte)] += 1);
@@ -74,13 +74,13 @@ fn a_snapshot_of_a_study_opens_with_its_secret_only() {
     assert!(remark.contains("sealed with the key of a study and is not used"), "{remark}");
     let remark = with("another", &SealKey::of_study(&[4; 32]));
     assert!(remark.contains("damaged or of another run"), "{remark}");
-    // What is played on with the secret is sealed with it again.
+    // Playing with the secret seals with the secret again.
     let mut session = Session::open_sealed(&folder, Access::Write, true, key.clone()).expect("it opens");
     week(&mut session);
     session.save().expect("saved");
     drop(session);
     assert_eq!(fs::read(folder.join("snapshot.bin")).expect("a snapshot")[TITLE.len()], b's');
-    // A run of no study is opened by a study as well.
+    // A study can also open a run outside of a study.
     let mut plain = create(own.path(), 6, 60);
     plain.save().expect("saved");
     let folder = plain.folder().expect("a folder").to_owned();

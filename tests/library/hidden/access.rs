@@ -1,4 +1,4 @@
-//! Who may ask, what a statement leaves behind, and that nobody else finds a table of these names.
+//! Permissions for hidden tables, recorded lines, and that other connections do not have these tables.
 
 use std::fs;
 
@@ -45,7 +45,7 @@ fn asking_changes_no_hash_and_each_statement_is_a_line() {
     assert!(refused.message.contains("did you mean c_max"), "{refused}");
     let refused = asked.inspect().xray_query("SELECT 1", Some(15)).expect_err("no day");
     assert_eq!(refused.to_string(), "day_unknown (day): there is no day 15; choose a day from 1 to 14");
-    assert!(world() == before, "nothing of it is in the file");
+    assert!(world() == before, "no hidden table is in the file");
     for session in [&mut asked, &mut alone] {
         week(session);
     }
@@ -57,7 +57,7 @@ fn asking_changes_no_hash_and_each_statement_is_a_line() {
     expected.push(("sql".to_owned(), "SELECT c_mx FROM hidden.customers".to_owned(), 3));
     assert_eq!(looks(&trajectory), expected);
     assert_eq!(verify(&place).expect("it verifies").day, 21);
-    // Opened again, the tables are there again.
+    // After reopening, the tables exist again.
     let mut again = Session::open(&place, Access::Write, true).expect("it opens");
     assert_eq!(hidden(&mut again, "SELECT max(day) FROM hidden.groups"), [[whole(21)]]);
 }
@@ -79,7 +79,7 @@ fn unfinished_runs_refuse_alike_whatever_is_asked_and_open_once_they_are_over() 
             assert_eq!(refused, "not_in_this_mode: the x-ray works in debug runs and in runs that are over");
         }
         assert!(session.inspect().xray_interrupt().is_err());
-        assert_eq!(lines(), before, "nothing was looked at, so nothing is recorded");
+        assert_eq!(lines(), before, "no inspection happened, so no line is recorded");
         session.end().expect("it ends");
         drop(session);
         let mut session = Session::open(&place, Access::Write, true).expect("it opens");
@@ -95,7 +95,6 @@ fn unfinished_runs_refuse_alike_whatever_is_asked_and_open_once_they_are_over() 
     }
 }
 
-/// Ways to name a table.
 const FORMS: [&str; 12] = [
     "SELECT * FROM {t}",
     "SELECT count(*) FROM {t}",
@@ -119,7 +118,7 @@ fn other_connections_know_no_such_table_and_say_what_they_say_of_any_name() {
         open_wide(&mut session);
         week(&mut session);
         if mode == Mode::Debug {
-            // Also where the x-ray was asked before.
+            // Also after a query of the x-ray.
             hidden_tables().iter().for_each(|table| {
                 hidden(&mut session, &format!("SELECT * FROM {}", table.name));
             });

@@ -1,4 +1,4 @@
-//! What the connection of the x-ray answers, refuses and leaves as it was.
+//! Results, rejections and limits of the connection of the x-ray.
 
 use novamind::database::Cell;
 use novamind::insight::Inspect;

@@ -1,4 +1,4 @@
-//! What the tables hold is what the world holds, on every day.
+//! Comparison of the hidden tables with the simulator state on every day.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use novamind::world::market::economy::Dimension;
 use super::{cell, hidden, make_offers, open_wide, run_in, whole, word};
 use crate::support::company::week;
 
-/// Rows of the tables by day, by table, as the world shows them while it is played.
+/// Rows by table and day, collected from the simulator during play.
 #[derive(Default)]
 struct Watched(BTreeMap<&'static str, Vec<Vec<Cell>>>);
 
@@ -98,7 +98,7 @@ fn tables_by_day_hold_what_the_world_held_on_every_day() {
     let mut session = run_in(folder.path(), Mode::Debug, 200);
     open_wide(&mut session);
     let mut watched = Watched::default();
-    // Asked early, in between and at the end: the tables are continued.
+    // Queries at several times: the tables are extended.
     for (week, asks) in (1..=20).zip([true, false, false, true, false, false, false].into_iter().cycle()) {
         watched_week(&mut session, &mut watched);
         if !asks && week != 20 {
@@ -115,7 +115,7 @@ fn tables_by_day_hold_what_the_world_held_on_every_day() {
     assert!(matches!(events[0][..], [Cell::Integer(some), Cell::Integer(same)] if some > 2 && some == same));
     let moved = hidden(&mut session, "SELECT 1 FROM hidden.drift WHERE global_quality > 0 AND c_max <> 0");
     assert!(!moved.is_empty(), "something has drifted");
-    // What is measured is published 30 days later, as the visible table tells.
+    // Measurements are published 30 days later, as in the visible table.
     let sql = "SELECT count(*) FROM hidden.pmi AS own JOIN macroeconomic_conditions AS told \
                ON told.day = own.measured_day AND told.pmi_value = own.measured_pmi \
                AND told.pmi_trend = own.pmi_trend \
@@ -129,7 +129,7 @@ fn tables_by_day_hold_what_the_world_held_on_every_day() {
     assert!(days > 800 && error < 1e-12, "{days} {error}");
 }
 
-/// Columns of a subscriber as the world holds them.
+/// Returns the columns of a subscriber from the simulator state.
 fn subscribers(session: &Session) -> Vec<Vec<Cell>> {
     let xray = session.xray().expect("a debug run");
     let mut rows = Vec::new();
@@ -185,13 +185,13 @@ fn customers_are_those_of_the_day_that_is_asked_for() {
     assert!(evenings[&35].len() > 100, "{}", evenings[&35].len());
     for (day, expected) in evenings.iter().chain(evenings.iter().rev()) {
         let rows = session.inspect().xray_query(SUBSCRIBERS, Some(*day)).expect("a look").rows;
-        // A query brings so many rows at most.
+        // The row limit of a query.
         assert_eq!(rows.len(), expected.len().min(5000), "day {day}");
         for (own, expected) in rows.iter().zip(expected) {
             assert_eq!(own, expected, "day {day}");
         }
     }
-    // Companies that negotiate are there with how they do, and join with what is visible of them.
+    // Negotiating enterprises have their status, and join with visible tables.
     let sql = "SELECT count(*), count(own.plan), count(reply_delay_mean), count(status) FROM hidden.customers AS own \
                JOIN subscriptions USING (customer_id) WHERE own.standing = 'lead'";
     let [Cell::Integer(leads), Cell::Integer(0), Cell::Integer(delays), Cell::Integer(known)] =
@@ -200,7 +200,7 @@ fn customers_are_those_of_the_day_that_is_asked_for() {
         panic!("leads");
     };
     assert!(leads > 3 && leads == delays && leads == known, "{leads} {delays} {known}");
-    // A call changes what stands now, and not the evening before it.
+    // A call changes the current state, not the end of the previous day.
     let relationships = "SELECT customer_id, relationship FROM hidden.customers ORDER BY 1";
     session.step(7, &mut |_| {}).expect("days");
     let before = hidden(&mut session, relationships);
@@ -218,7 +218,7 @@ fn threads_are_as_the_lens_shows_them() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, 90);
     open_wide(&mut session);
-    // Leads first: then the shadow has come further than threads are kept.
+    // Leads first: the re-simulation is then ahead of the kept threads.
     for _ in 0..6 {
         week(&mut session);
         make_offers(&mut session);

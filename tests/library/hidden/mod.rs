@@ -1,5 +1,5 @@
-//! The hidden tables: what they hold is what the world holds, they exist on the connection of the x-ray and on no other, and
-//! whoever asks leaves a line.
+//! The hidden tables: their rows equal the simulator state, they exist only on the connection of the x-ray, and every query
+//! records a line.
 
 mod access;
 mod connection;
@@ -31,7 +31,7 @@ fn run_in(folder: &Path, mode: Mode, days: u32) -> Session {
     Session::create(new, &Configuration::shipped()).expect("the run begins")
 }
 
-/// A company with subscribers in several groups, ads of its own and negotiations.
+/// Returns a company with subscribers in several groups, in-app advertising and negotiations.
 fn open_wide(session: &mut Session) {
     open_shop(session);
     for (tool, arguments) in [
@@ -52,7 +52,7 @@ fn open_wide(session: &mut Session) {
     }
 }
 
-/// Offers every company that waits what it asked for, or a little more.
+/// Offers every waiting enterprise its requested price or slightly more.
 fn make_offers(session: &mut Session) {
     let waiting = session.company().observe().waiting;
     let deal = |(customer, asked): (u32, f64)| json!([customer, [["C", asked * 1.3], ["B", asked * 1.05]]]);

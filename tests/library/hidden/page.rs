@@ -1,4 +1,4 @@
-//! The page that lists the columns.
+//! The documentation page of the columns.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +10,6 @@ use novamind::record::mode::Mode;
 use super::{open_wide, run_in};
 use crate::support::company::weeks;
 
-/// The part of the page that lists the tables.
 fn as_page(tables: &[Table]) -> String {
     let column = |own: &Column| {
         let values = match own.values.as_slice() {
@@ -41,7 +40,7 @@ fn columns_of_hidden_tables_in_documents_are_those_that_exist() {
     } else {
         assert!(
             listed == expected,
-            "{} is out of date; with NOVAMIND_WRITE_DOCUMENTS=1 this test writes it anew",
+            "{} is out of date; run this test with NOVAMIND_WRITE_DOCUMENTS=1 to update it",
             path.display()
         );
     }

@@ -1,7 +1,7 @@
-//! What one part hands to the next arrives there, unchanged and in the right place: arguments of calls, days and weeks
-//! of a past that is taken over, columns of tables, limits and exit codes at the edge of the program.
+//! Values arrive unchanged and in the correct place: arguments of calls, copied days and weeks of branches, columns of tables,
+//! limits and exit codes.
 //!
-//! Fixtures are lopsided on purpose: with different numbers everywhere, whatever is swapped shows.
+//! Fixtures have different numbers everywhere, so that swapped values show.
 
 mod past;
 mod settings;
@@ -11,7 +11,7 @@ use novamind::record::folder::configuration::Configuration;
 use novamind::record::mode::Mode;
 use novamind::session::{NewRun, Session, Storage};
 
-/// A run in memory, or below a folder.
+/// Creates a run in memory, or in a folder.
 fn create(storage: Storage, overrides: &[(&str, &str)]) -> Session {
     let overrides = overrides.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
     let new = NewRun {

@@ -1,4 +1,4 @@
-//! The past: what a branch takes over, and what forecasts were filed.
+//! Copied lines of branches, and submitted forecasts.
 
 use novamind::record::mode::Mode;
 use novamind::record::trajectory::Trajectory;
@@ -14,7 +14,7 @@ fn a_branch_leaves_out_what_was_decided_on_the_day_it_begins() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut parent = create(Storage::Runs(folder.path().to_owned()), &[]);
     let mut at_the_beginning = Vec::new();
-    // Week by week another price, decided on the first day of the week.
+    // Another price on the first day of each week.
     for number in 1..=4 {
         at_the_beginning.push((number, parent.company().current("set_prices"), parent.state_hash().1));
         call(&mut parent, "set_prices", json!({"A": 10 + number, "B": 30 - number}));
@@ -27,7 +27,7 @@ fn a_branch_leaves_out_what_was_decided_on_the_day_it_begins() {
         assert_eq!(branch.company().current("set_prices"), prices, "week {number}");
         assert!(branch.company().changes().is_empty(), "nothing is decided yet in week {number}");
         for (part, hash) in &branch.state_hash().1 {
-            // The chain of facts goes on with the calls of the week, which the branch does not have.
+            // The hash of the facts includes the calls of the week, which the branch does not have.
             if *part != "facts" {
                 assert_eq!(hash, &parts[part], "{part} at the beginning of week {number}");
             }
@@ -39,7 +39,6 @@ fn a_branch_leaves_out_what_was_decided_on_the_day_it_begins() {
     }
 }
 
-/// Twelve numbers, none of which could stand for another.
 const TWELVE: [[f64; 3]; 4] = [
     [990_001.0, 980_002.0, 995_003.0],
     [960_004.0, 930_005.0, 985_006.0],

@@ -1,4 +1,4 @@
-//! Settings: what a tool sets is what undo, redo, the change review and the tables know.
+//! Settings: undo, redo, the change review and the tables agree with the calls.
 
 use novamind::record::trajectory::record::Via;
 use novamind::session::{Session, Storage};
@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::create;
 use crate::support::company::{call, numbers, week};
 
-/// Two calls of a tool that differ in every number.
+/// Returns two calls of a tool that differ in every number.
 fn two_calls(tool: &str) -> [Value; 2] {
     match tool {
         "set_prices" => [json!({"A": 12, "B": 25, "C": 55}), json!({"A": 13.5, "B": 26.75, "C": 59})],
@@ -51,16 +51,14 @@ fn two_calls(tool: &str) -> [Value; 2] {
             json!({"by_group": {"S3": 50.5}, "by_plan": {"A": 60, "C": 70},
                    "by_group_plan": {"S2": {"A": 80}, "E1": {"B": 90}}, "by_customer": {"19": 95}}),
         ],
-        other => panic!("{other} is new: say here how it is called twice"),
+        other => panic!("{other} is new: add two calls of it here"),
     }
 }
 
-/// Tools that change what holds from the next day on.
 fn setting_tools() -> impl Iterator<Item = &'static str> {
     CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| spec.kind == Kind::Setting).map(|spec| spec.name())
 }
 
-/// Hash of the settings in force.
 fn settings(session: &Session) -> String {
     session.state_hash().1["settings"].clone()
 }
@@ -82,7 +80,7 @@ fn undo_and_redo_restore_every_setting_exactly_and_say_so() {
         let redone = session.redo(Via::Form).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
         assert_eq!((settings(&session), session.company().current(tool)), states[2], "{tool} after redo");
 
-        // What was said of both is the same way, there and back.
+        // Undo and redo describe the same change.
         assert!(!undone.is_empty(), "{tool}");
         for change in &undone {
             let back = redone.iter().find(|other| other.setting == change.setting);
@@ -102,7 +100,7 @@ fn the_change_review_names_every_number_that_was_set() {
         let mut expected = Vec::new();
         leaves(&two_calls(tool)[1], &mut expected);
         let mut told: Vec<f64> = session.company().changes().iter().map(|change| change.new).collect();
-        // A number that is what it was is no change.
+        // An unchanged number is not a change.
         expected.retain(|number| *number != 0.0);
         told.retain(|number| *number != 0.0);
         for number in &told {

@@ -1,4 +1,4 @@
-//! Money for support: each pool solves the issues it is for, and no others.
+//! Support budgets: each resolves issues of its scope only.
 
 use novamind::session::{Session, Storage};
 use serde_json::{Value, json};
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::create;
 use crate::support::company::{call, numbers, week, weeks};
 
-/// A company of several groups and plans where nobody's issues are solved by themselves.
+/// Returns a company with several groups and plans in which no issue is resolved without a budget.
 fn waiting_company() -> Session {
     let overrides = [("issues.issue_resolution_base_rate", "0.0")];
     let mut session = create(Storage::Memory, &overrides);
@@ -24,10 +24,10 @@ fn waiting_company() -> Session {
     session
 }
 
-/// Nobody changes their plan between two billing days; those of days 36 to 42 are left out.
+/// Customers without a billing day on days 36 to 42, because only billing can change the plan.
 const SAME_PLAN: &str = "s.billing_day_mod30 NOT BETWEEN 6 AND 12";
 
-/// Issues that were open on day 35, inside and outside of a condition, and how many of them were solved since.
+/// Counts the issues that were open on day 35, within and outside of a condition, and how many were resolved since.
 fn solved(session: &mut Session, inside: &str) -> [f64; 4] {
     let sql = format!(
         "SELECT total(({inside})), total(({inside}) AND i.resolved_day > 35), total(NOT ({inside})), \
@@ -45,7 +45,7 @@ fn fund(arguments: Value, inside: &str) {
     week(&mut session);
     let [issues, helped, others, others_helped] = solved(&mut session, inside);
     assert!(issues >= 1.0 && others > 20.0, "{arguments}: {issues} issues inside, {others} outside");
-    assert_eq!(others_helped, 0.0, "{arguments} helps somebody else");
+    assert_eq!(others_helped, 0.0, "{arguments} resolves other issues");
     assert!(helped > 0.8 * issues, "{arguments}: {helped} of {issues} are solved");
 }
 

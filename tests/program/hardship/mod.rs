@@ -224,7 +224,7 @@ fn a_damaged_manifest_is_made_anew_and_the_trajectory_goes_on() {
     let trajectory = bytes_of(&folder, "trajectory.jsonl");
     let line = |name: &str| good.lines().position(|line| line.starts_with(name)).expect("a line") + 1;
     let cases = [
-        (good.replace("seed = 42", "seed = 5"), "said otherwise (seed)".to_owned()),
+        (good.replace("seed = 42", "seed = 5"), "differed (seed)".to_owned()),
         (
             good.replace("seed = 42", "sed = 42"),
             format!("run.toml was damaged (line {}: unknown field `sed`", line("seed")),
@@ -234,7 +234,7 @@ fn a_damaged_manifest_is_made_anew_and_the_trajectory_goes_on() {
         (good.replace("format = 2", "format = 3"), "run.toml named another format".to_owned()),
         (
             good.replace("parameters_digest = \"", "parameters_digest = \"0"),
-            "said otherwise (parameters_digest)".to_owned(),
+            "differed (parameters_digest)".to_owned(),
         ),
         (good.replace("format = 2", "format = "), "run.toml was damaged (line 1".to_owned()),
         (String::new(), "missing field `format`".to_owned()),

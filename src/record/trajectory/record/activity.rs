@@ -1,5 +1,5 @@
-//! What a person did besides acting on the company: where they looked, what they opened, typed and left, when they were
-//! there. None of it changes the run; a replay passes over it.
+//! Activity of a user that does not change the run: viewed screens, opened objects, typed texts, presence. A replay skips
+//! it.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -8,43 +8,43 @@ use super::answers::{Answered, Asked};
 use super::lesson::LessonNote;
 use super::presence::{Clock, Limit, Presence};
 
-/// Something a person did that changes nothing.
+/// An activity that does not change the run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Activity {
-    /// The program took up or left the run; the person went away or came back.
+    /// The program attached to or detached from the run, or the user left or returned.
     Session(Box<Presence>),
-    /// The person stopped the clock or started it again.
+    /// The user stopped or restarted the clock.
     Clock(Clock),
-    /// A time limit was near or reached.
+    /// A time limit approached or was reached.
     Limit(Limit),
-    /// A screen was looked at.
+    /// A screen was viewed.
     View(View),
-    /// One object was opened: a group, a thread, a tool, a post, a study.
+    /// An object was opened: a group, a thread, a tool, a post, a study.
     Select(Select),
     /// A dialog was open.
     Dialog(DialogUse),
     /// A term was explained.
     Help(Help),
-    /// A text was edited and sent, or left behind.
+    /// A text was edited and sent, or abandoned.
     Draft(Draft),
     /// A question of the study was shown.
     Question(Asked),
-    /// It was answered, or passed over.
+    /// A question was answered or skipped.
     Answer(Answered),
-    /// Something happened in the lesson that the run belongs to.
+    /// An event of the lesson of the run.
     Lesson(LessonNote),
-    /// The run was read from outside: by a command, without playing.
+    /// A command read the run without playing it.
     Look(Look),
     /// Hidden state was shown.
     Xray(XrayLook),
 }
 
-/// A look at a screen.
+/// A view of a screen.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct View {
     /// Screen.
     pub screen: String,
-    /// Screen before it; empty if there was none.
+    /// Previous screen; empty if there was none.
     pub from: String,
     /// Milliseconds.
     pub for_ms: u64,
@@ -55,40 +55,40 @@ pub struct View {
 pub struct Select {
     /// Screen.
     pub screen: String,
-    /// What kind of object: `group`, `thread`, `tool`, `post`, `study`, `table`, `figure`, `command`.
+    /// Kind of the object: `group`, `thread`, `tool`, `post`, `study`, `table`, `figure`, `command`.
     pub what: String,
-    /// Which, as tools and tables name it.
+    /// Name of the object in tools and tables.
     pub which: String,
 }
 
 /// A dialog that was open.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DialogUse {
-    /// Which.
+    /// Name of the dialog.
     pub what: String,
-    /// What became of it.
+    /// Outcome.
     pub outcome: DialogOutcome,
-    /// Milliseconds it was open.
+    /// Milliseconds for which it was open.
     pub for_ms: u64,
-    /// Milliseconds in each of its steps, in the order in which they were entered.
+    /// Its steps in the order in which they were entered, with their durations.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub steps: Vec<DialogStep>,
 }
 
-/// What became of a dialog.
+/// Outcome of a dialog.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DialogOutcome {
-    /// What it asked for was confirmed.
+    /// The user confirmed it.
     Confirmed,
-    /// It was left.
+    /// The user left it.
     Cancelled,
 }
 
 /// A step of a dialog.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DialogStep {
-    /// Which.
+    /// Name of the step.
     pub step: String,
     /// Milliseconds.
     pub for_ms: u64,
@@ -99,74 +99,74 @@ pub struct DialogStep {
 pub struct Help {
     /// Term, tool, table or column.
     pub term: String,
-    /// Where it was asked for: a screen, a dialog, `plain`.
+    /// Place of the request: a screen, a dialog, `plain`.
     pub place: String,
 }
 
 /// A text that was edited.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Draft {
-    /// Where: `rationale`, `forecasts`, `notes`, `sql`, `post`, or `form` and the tool.
+    /// Place: `rationale`, `forecasts`, `notes`, `sql`, `post`, or `form` and the tool.
     pub place: String,
-    /// What became of it.
+    /// Outcome.
     pub outcome: DraftOutcome,
-    /// Letters of the text when it was sent or left.
+    /// Characters of the text when it was sent or abandoned.
     pub length: u64,
-    /// Letters that were typed.
+    /// Typed characters.
     pub typed: u64,
-    /// Letters that were deleted.
+    /// Deleted characters.
     pub deleted: u64,
-    /// Letters that came from the clipboard.
+    /// Pasted characters.
     pub pasted: u64,
-    /// Pauses of more than two seconds between two keys.
+    /// Number of pauses of more than two seconds between keys.
     pub pauses: u32,
     /// Milliseconds from the first key to the last.
     pub for_ms: u64,
-    /// The text that was left behind, where the rules keep it.
+    /// The abandoned text, if the rules keep it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub text: Option<String>,
 }
 
-/// What became of a text.
+/// Outcome of an edited text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DraftOutcome {
-    /// It was sent or kept.
+    /// It was sent or saved.
     Sent,
-    /// It was left behind.
+    /// It was abandoned.
     Left,
-    /// It was offered again after the program had been stopped, and taken.
+    /// It was restored after a restart of the program.
     Restored,
 }
 
-/// A command that read the run from outside.
+/// A command that read the run without playing it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Look {
     /// Command: `query`, `report`, `replay`, `pictures`, `compare`.
     pub command: String,
-    /// What it asked for: the statement, the format.
+    /// Details: the statement or the format.
     pub detail: String,
 }
 
-/// Hidden state that was shown.
+/// An inspection of hidden state.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct XrayLook {
-    /// What was shown: `leads`, `customer`, `sql` and so on.
+    /// Kind of the inspection: `leads`, `customer`, `sql` and so on.
     pub what: String,
-    /// Of which group, customer or part; the statement of `sql`; empty where there is nothing to choose.
+    /// Group, customer or part, or the statement of `sql`; empty if there is no choice.
     pub which: String,
     /// The day that was shown.
     pub shown_day: u32,
 }
 
 impl Activity {
-    /// The kinds that a study can leave out, as lines name them. Looks with the x-ray are always recorded.
+    /// Kinds that a study can exclude from the record. Inspections and lesson events are always recorded.
     pub const KINDS: [&str; 11] = [
         "session", "clock", "limit", "view", "select", "dialog", "help", "draft", "question", "answer",
         "look",
     ];
 
-    /// Name of the kind.
+    /// Returns the name of the kind.
     pub fn kind(&self) -> &'static str {
         match self {
             Activity::Session(_) => "session",
@@ -185,7 +185,7 @@ impl Activity {
         }
     }
 
-    /// Whether the record would lack something that no other line tells: then it is on the disk at once.
+    /// Returns whether the activity is evidence that no other line has. Such lines are synced at once.
     pub fn is_evidence(&self) -> bool {
         !matches!(
             self,
@@ -197,7 +197,7 @@ impl Activity {
         )
     }
 
-    /// Reads a line of a kind; none if the kind is no activity.
+    /// Parses a line of a kind. Returns `None` if the kind is not an activity.
     pub(super) fn read(kind: &str, line: &[u8]) -> Option<serde_json::Result<Activity>> {
         fn of<'a, T: Deserialize<'a>>(
             line: &'a [u8],
@@ -223,7 +223,7 @@ impl Activity {
         })
     }
 
-    /// Its fields, in their order.
+    /// Returns the fields, in order.
     pub(super) fn fields(&self) -> serde_json::Result<Value> {
         match self {
             Activity::Session(presence) => serde_json::to_value(presence),
@@ -243,7 +243,7 @@ impl Activity {
     }
 }
 
-/// The fields of an activity as a map, for programs.
+/// The fields of an activity, in order.
 impl From<&Activity> for Map<String, Value> {
     fn from(activity: &Activity) -> Self {
         match activity.fields() {

@@ -1,4 +1,4 @@
-//! Questions of a study, and their answers.
+//! Questions and answers of a study.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -6,17 +6,17 @@ use serde_json::Value;
 /// A question that was shown.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Asked {
-    /// Questionnaire it belongs to.
+    /// Questionnaire.
     pub questionnaire: String,
-    /// When it is asked: `before`, `week 4`, `break`, `end`.
+    /// Occasion: `before`, `week 4`, `break`, `end`.
     pub occasion: String,
     /// Name of the question.
     pub id: String,
-    /// Its text as it was shown.
+    /// Text as shown.
     pub text: String,
     /// `likert`, `number`, `choice`, `text` or `attention`.
     pub form: String,
-    /// What could be chosen, where something could.
+    /// Options, for questions with choices.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub options: Vec<String>,
 }
@@ -26,17 +26,17 @@ pub struct Asked {
 pub struct Answered {
     /// Questionnaire.
     pub questionnaire: String,
-    /// When it was asked.
+    /// Occasion.
     pub occasion: String,
     /// Name of the question.
     pub id: String,
-    /// A number, a text, a list of options; null if it was passed over.
+    /// A number, a text, or a list of options; null if the question was skipped.
     pub value: Value,
-    /// Whether it is the expected one, of attention checks.
+    /// Whether the answer is the expected one; attention checks only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub as_expected: Option<bool>,
-    /// Milliseconds from showing to answering.
+    /// Milliseconds from the question to the answer.
     pub for_ms: u64,
-    /// How often the answer was changed before.
+    /// Number of changes before the answer was submitted.
     pub changes: u32,
 }

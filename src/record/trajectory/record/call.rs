@@ -1,4 +1,4 @@
-//! Calls of tools, and what came of them.
+//! Tool calls and their outcomes.
 
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
@@ -7,36 +7,36 @@ use super::called_tool::CalledTool;
 use super::request_id::RequestId;
 use novamind_tools::Refusal;
 
-/// A call of a tool.
+/// A tool call.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "CallFields", into = "CallFields")]
 pub struct Call {
-    /// Tool; a name that no tool has if the call was refused for it.
+    /// Tool, or an unknown name if the call was rejected for it.
     pub tool: CalledTool,
-    /// Arguments: as they were understood if it was accepted, as they were sent if it was refused.
+    /// Arguments: as parsed for an accepted call, as sent for a rejected one.
     pub args: Value,
-    /// What came of it.
+    /// Outcome.
     pub outcome: Outcome,
-    /// Where it came from.
+    /// Source of the call.
     pub via: Via,
-    /// Milliseconds it took.
+    /// Duration in milliseconds.
     pub took_ms: f64,
-    /// What it did to an earlier call.
+    /// Whether it undoes or redoes an earlier call.
     pub reversal: Option<Reversal>,
-    /// The id that the program gave it.
+    /// Request id that the client sent.
     pub request: Option<RequestId>,
 }
 
-/// What came of a call.
+/// Outcome of a call.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
-    /// It was accepted, and this is the answer.
+    /// Accepted, with the result.
     Accepted(Value),
-    /// It was refused.
+    /// Rejected.
     Refused(RefusalRecord),
 }
 
-/// Where an action came from.
+/// Source of an action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Via {
@@ -54,33 +54,33 @@ pub enum Via {
     Policy,
     /// A stored script.
     Script,
-    /// A branch that keeps the decisions of its run.
+    /// A branch that copies the decisions of its parent run.
     Branch,
-    /// The file of a lesson: its start, and what it does by itself.
+    /// The file of a lesson: its start and its automatic actions.
     Lesson,
 }
 
-/// What a call does to earlier calls of its week.
+/// Relation of a call to an earlier call of its week.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Reversal {
-    /// It takes back the call of this line.
+    /// It undoes the call of this line.
     Undoes(u64),
-    /// It repeats what the call of this line took back.
+    /// It redoes what the undo of this line reverted.
     Redoes(u64),
 }
 
-/// A refusal as a line has it.
+/// A rejection in a line.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RefusalRecord {
     /// Code.
     pub code: String,
-    /// What was wrong.
+    /// Message.
     pub message: String,
     /// Argument at fault.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub field: Option<String>,
-    /// For several deals that were all refused: what is wrong with each.
+    /// Reasons for each deal, if a call has several deals and all were rejected.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub results: Vec<Value>,
 }
@@ -93,7 +93,6 @@ impl From<Refusal> for RefusalRecord {
     }
 }
 
-/// The fields of a call, in their order.
 #[derive(Serialize, Deserialize)]
 struct CallFields {
     tool: CalledTool,
@@ -165,7 +164,7 @@ impl From<Call> for CallFields {
     }
 }
 
-/// A field that is there, also where it is null.
+/// Distinguishes a null field from a missing one.
 fn given<'de, D: Deserializer<'de>>(field: D) -> Result<Option<Value>, D::Error> {
     Value::deserialize(field).map(Some)
 }

@@ -1,4 +1,4 @@
-//! The tool that a call names, which need not exist.
+//! The tool of a call, which may not exist.
 
 use std::fmt;
 
@@ -6,15 +6,15 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use novamind_tools::ToolId;
 
-/// Longest unknown name that is recorded, in characters. A longer one is cut and ends with an ellipsis.
+/// Maximum characters of a recorded unknown name. Longer names are truncated with an ellipsis.
 const MAX_NAME_CHARACTERS: usize = 128;
 
-/// The tool that a call names.
+/// The tool of a call.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum CalledTool {
     /// A tool of the catalogue.
     Known(ToolId),
-    /// A name that no tool has.
+    /// An unknown name.
     Unknown(String),
 }
 

@@ -1,53 +1,53 @@
-//! What a student does in a lesson, and what comes of it.
+//! Events of a lesson.
 
 use serde::{Deserialize, Serialize};
 
 use super::shortest_if_any;
 
-/// Something that happened in a lesson.
+/// An event of a lesson.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LessonNote {
-    /// What.
+    /// Kind of the event.
     pub event: LessonEvent,
-    /// The step, counted from 1.
+    /// Step, from 1.
     pub step: u32,
-    /// Which try, hint, or goal it is, counted from 1.
+    /// Number of the attempt, hint or goal, from 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub number: Option<u32>,
     /// Name of a pitfall.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// What was guessed or measured; of choices the number of the one taken, counted from 1.
+    /// Guessed or measured value; for choices the number of the choice, from 1.
     #[serde(default, serialize_with = "shortest_if_any", skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
-    /// What was to be reached.
+    /// Value to reach.
     #[serde(default, serialize_with = "shortest_if_any", skip_serializing_if = "Option::is_none")]
     pub bound: Option<f64>,
-    /// Whether it was reached, or guessed right.
+    /// Whether the goal was reached, or the guess was correct.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub met: Option<bool>,
 }
 
-/// What happened in a lesson.
+/// Kind of a lesson event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LessonEvent {
-    /// A step began.
+    /// A step started.
     Begun,
     /// The question of the step was answered.
     Guess,
-    /// A hint was asked for.
+    /// A hint was requested.
     Hint,
-    /// A pitfall was met.
+    /// A pitfall was triggered.
     Pitfall,
-    /// What was to be guessed is known.
+    /// The outcome of a guess was measured.
     Outcome,
     /// A goal was judged.
     Goal,
 }
 
 impl LessonNote {
-    /// A note about a step that says nothing else yet.
+    /// Returns an event of a step without further fields.
     pub fn about(event: LessonEvent, step: u32) -> LessonNote {
         LessonNote { event, step, number: None, name: None, value: None, bound: None, met: None }
     }

@@ -1,7 +1,7 @@
-//! What a line of a trajectory says, by its kind.
+//! Events of a trajectory, by the kind of their line.
 //!
-//! Fields stand in the order in which they are written. A field that this version does not know is no error; a line keeps
-//! its text, so that a copy of it loses nothing.
+//! Fields are declared in the order in which they are written. Unknown fields are not an error: a line keeps its text, so
+//! copies of it are complete.
 
 mod activity;
 mod answers;
@@ -35,41 +35,41 @@ pub use start::{Parent, Start};
 pub use voice::{AskedOfModel, FailedAnswer, JudgedPost, VoiceAnswer, WordedPost, WordedPosts};
 pub use week::{Advance, Branch, Calculated, Closing, End, Ended, FiledForecast, Override};
 
-/// What a line says.
+/// An event of a trajectory.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Record {
     /// The first line: what the run is.
     Start(Box<Start>),
     /// A tool was called.
     Call(Call),
-    /// The database was asked.
+    /// The database was queried.
     Query(Query),
-    /// The person did something that changes nothing.
+    /// An activity that does not change the run.
     Activity(Activity),
-    /// The notes were kept, as format 1 tells it.
+    /// The notes were saved; format 1.
     Memo(Memo),
-    /// The notes were kept.
+    /// The notes were saved.
     Note(Note),
-    /// Rationale and forecasts were filed, and the week was let pass.
+    /// Rationale and forecasts were submitted for a week.
     Advance(Advance),
-    /// A language model spoke, or did not.
+    /// A language model responded or failed.
     Voice(VoiceAnswer),
-    /// A week has passed.
+    /// A week was simulated.
     Week(Closing),
-    /// Single days of a debug run have passed.
+    /// Single days of a debug run were simulated.
     Step(Closing),
     /// A parameter was changed in a debug run.
     Override(Override),
-    /// The run began as a branch of another.
+    /// The end of the lines that a branch copied.
     Branch(Branch),
-    /// The run was over.
+    /// The end of the run.
     End(End),
-    /// A kind that this version does not know, by its name.
+    /// A kind that this version does not know, with its name.
     Unknown(String),
 }
 
 impl Record {
-    /// Name of the kind.
+    /// Returns the name of the kind.
     pub fn kind(&self) -> &str {
         match self {
             Record::Start(_) => "start",
@@ -89,7 +89,7 @@ impl Record {
         }
     }
 
-    /// Reads a line of a kind.
+    /// Parses a line of a kind.
     pub fn read(kind: &str, line: &[u8]) -> serde_json::Result<Record> {
         Ok(match kind {
             "start" => Record::Start(serde_json::from_slice(line)?),
@@ -111,7 +111,7 @@ impl Record {
         })
     }
 
-    /// Its fields, in their order.
+    /// Returns the fields, in order.
     pub fn fields(&self) -> Map<String, Value> {
         let fields = match self {
             Record::Start(start) => serde_json::to_value(start),
@@ -130,12 +130,12 @@ impl Record {
         };
         match fields {
             Ok(Value::Object(fields)) => fields,
-            // Records hold nothing that JSON does not know.
+            // Events have only values that JSON supports.
             _ => Map::new(),
         }
     }
 
-    /// The days it closes, if it closes some.
+    /// Returns the simulated days that the event closes, if any.
     pub fn closing(&self) -> Option<&Closing> {
         match self {
             Record::Week(closing) | Record::Step(closing) => Some(closing),
@@ -143,7 +143,7 @@ impl Record {
         }
     }
 
-    /// Digest of the notes that it keeps, if it keeps some.
+    /// Returns the digest of the saved notes, if any.
     pub fn notes_digest(&self) -> Option<&str> {
         match self {
             Record::Memo(memo) => Some(&memo.digest),
@@ -152,7 +152,7 @@ impl Record {
         }
     }
 
-    /// The call and its answer, if it is one that was accepted.
+    /// Returns the call and its result for an accepted call.
     pub fn accepted_call(&self) -> Option<(&Call, &Value)> {
         match self {
             Record::Call(call @ Call { outcome: Outcome::Accepted(answer), .. }) => Some((call, answer)),
@@ -161,7 +161,7 @@ impl Record {
     }
 }
 
-/// Whole amounts without a decimal point.
+/// Serializes whole amounts without a decimal point.
 fn shortest<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
     json_number(*number).serialize(serializer)
 }

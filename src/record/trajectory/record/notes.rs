@@ -1,65 +1,65 @@
-//! What was asked of the database, and the notes that were kept.
+//! Queries and saved notes.
 
 use serde::{Deserialize, Serialize};
 
-/// A question to the database.
+/// A query of the database.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Query {
     /// Statement.
     pub sql: String,
-    /// Rows of the answer; none if there is none.
+    /// Rows of the result; `None` without a result.
     pub rows: Option<u64>,
-    /// There were more rows than are shown.
+    /// Whether more rows exist than were returned.
     pub truncated: bool,
-    /// Code of what was wrong.
+    /// Error code.
     pub error: Option<String>,
-    /// What was wrong, in words.
+    /// Error message.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub message: Option<String>,
-    /// The person stopped it.
+    /// Whether the user cancelled it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub stopped: bool,
-    /// Where the statement came from; none in lines of format 1.
+    /// Source of the statement; `None` in lines of format 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub via: Option<QuerySource>,
-    /// Milliseconds it took.
+    /// Duration in milliseconds.
     pub took_ms: f64,
 }
 
-/// Where a statement came from.
+/// Source of a statement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum QuerySource {
-    /// The person wrote it.
+    /// The user typed it.
     Typed,
     /// A query of the library, unchanged.
     Library,
     /// The rows behind a figure.
     DrillDown,
-    /// The program made it of a result: counts, pivots.
+    /// The program derived it from a result: counts, pivots.
     Derived,
-    /// A script in Python.
+    /// A Python script.
     Script,
     /// A program, over HTTP or the Model Context Protocol.
     Program,
 }
 
-/// The notes as they were kept, in lines of format 1; their text is in a file of its own.
+/// Saved notes in lines of format 1; their text is in a separate file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Memo {
-    /// blake3 digest of the text, in hexadecimal digits.
+    /// BLAKE3 digest of the text, in hexadecimal digits.
     pub digest: String,
     /// Bytes of the text.
     pub length: u64,
 }
 
-/// The notes as they were kept.
+/// Saved notes.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Note {
-    /// blake3 digest of the text, in hexadecimal digits.
+    /// BLAKE3 digest of the text, in hexadecimal digits.
     pub digest: String,
     /// Bytes of the text.
     pub length: u64,
-    /// The text, unless the rules mask it.
+    /// The text; `None` if the rules mask it.
     pub text: Option<String>,
 }

@@ -1,24 +1,24 @@
-//! Whether somebody is there: the program taking up and leaving a run, absences, the stopped clock, time limits.
+//! Presence: attached programs, absences of the user, the stopped clock, time limits.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// The program or the person came or went.
+/// A change of the presence of the program or the user.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Presence {
-    /// What happened.
+    /// Kind of the event.
     pub event: PresenceEvent,
-    /// Why the program left the run.
+    /// Why the program detached from the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cause: Option<LeavingCause>,
-    /// What the person plays with: `console`, `plain`, `http`, `policy`.
+    /// Interface: `console`, `plain`, `http`, `policy`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interface: Option<String>,
-    /// Names the machine without telling which it is: 16 hexadecimal digits of a keyed hash.
+    /// Pseudonym of the machine: 16 hexadecimal digits of a keyed hash.
     pub machine: String,
-    /// Names the time since the machine was started, likewise.
+    /// Pseudonym of the boot of the machine, likewise.
     pub boot: String,
-    /// Milliseconds since the machine was started, by a clock that nobody can set.
+    /// Milliseconds since the boot, by the monotonic clock.
     pub monotonic_ms: u64,
     /// Columns and rows of the terminal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -26,116 +26,116 @@ pub struct Presence {
     /// Version of the program.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub version: Option<String>,
-    /// Milliseconds since the last key, where the person was found to be idle.
+    /// Milliseconds since the last key, if the user was idle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub idle_ms: Option<u64>,
-    /// Length and last hash of `worlds.jsonl`, a list that earlier builds kept. Read, never written.
+    /// Length and last hash of `worlds.jsonl`, a list of earlier builds. It is read and never written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub worlds: Option<Value>,
 }
 
-/// What happened to the presence of program or person.
+/// Kind of a presence event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PresenceEvent {
-    /// The program took up the run.
+    /// The program attached to the run.
     Opened,
-    /// The program left the run.
+    /// The program detached from the run.
     Closed,
-    /// No key for a while: the person reads, thinks, or is gone.
+    /// No key for a minute.
     Idle,
-    /// The first key after that.
+    /// The first key after an idle period.
     Active,
-    /// The terminal lost the focus: another window has it.
+    /// The terminal lost the focus.
     FocusLost,
-    /// The terminal has the focus again.
+    /// The terminal regained the focus.
     FocusGained,
-    /// The program was stopped by the shell.
+    /// The shell suspended the program.
     Suspended,
-    /// It goes on.
+    /// The program resumed.
     Resumed,
-    /// The window has another size.
+    /// The window was resized.
     Resized,
 }
 
-/// Why the program left a run.
+/// Why the program detached from a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LeavingCause {
-    /// The person left it.
+    /// The user quit.
     Quit,
-    /// The input was at its end.
+    /// The input ended.
     EndOfInput,
-    /// A signal: somebody ended the program.
+    /// A signal terminated the program.
     Signal,
     /// The terminal was closed.
     Hangup,
-    /// Strict plain mode met a refusal.
+    /// Strict plain mode stopped after a rejection.
     Strict,
-    /// The person withdrew from the study.
+    /// The participant withdrew from the study.
     Withdrawn,
 }
 
-/// The clock was stopped or started.
+/// A stop or start of the clock.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Clock {
-    /// What happened.
+    /// Kind of the event.
     pub event: ClockEvent,
-    /// Why it was stopped, as the person says, where the study asks.
+    /// Reason of the stop that the user entered, if the study asks for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// Milliseconds that it stood, when it is started.
+    /// Milliseconds for which the clock was stopped, when it is started.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stood_ms: Option<u64>,
 }
 
-/// What happened to the clock.
+/// Kind of a clock event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ClockEvent {
-    /// Stopped: the screen is covered.
+    /// Stopped; the screen is covered.
     Stopped,
-    /// Started by the person.
+    /// Started by the user.
     Started,
-    /// It stood when the program left the run, and is started as the run is taken up.
+    /// Started on reopening the run, after the program had detached with a stopped clock.
     Forgotten,
 }
 
-/// A time limit.
+/// An event of a time limit.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Limit {
-    /// Which: `week`, `session`, `study`.
+    /// Scope: `week`, `session`, `study`.
     pub limit: LimitScope,
-    /// What happened.
+    /// Kind of the event.
     pub event: LimitEvent,
-    /// Minutes that are allowed.
+    /// Allowed minutes.
     pub minutes: u32,
-    /// Active milliseconds that were used.
+    /// Used active time in milliseconds.
     pub used_ms: u64,
 }
 
-/// What a limit is on.
+/// Scope of a time limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LimitScope {
     /// One week of the company.
     Week,
-    /// One sitting.
+    /// One session.
     Session,
-    /// All sittings.
+    /// All sessions of the study.
     Study,
 }
 
-/// What came of a limit.
+/// Kind of a limit event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LimitEvent {
-    /// The person was warned.
+    /// The participant was warned.
     Warned,
-    /// It was reached, and the person was reminded.
+    /// The limit was reached, and the participant was reminded.
     Reminded,
-    /// It was reached, and the week was filed naively.
+    /// The limit was reached, and the week was submitted with naive forecasts.
     FiledNaively,
-    /// It was reached, and the clock was stopped.
+    /// The limit was reached, and the clock was stopped.
     Paused,
 }

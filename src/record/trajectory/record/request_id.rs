@@ -1,19 +1,18 @@
-//! The id that a program gives a request, so that a retry does not run it twice.
+//! Request ids of clients, which prevent a retry from running a request twice.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// Hexadecimal digits of a digest.
 const DIGEST_DIGITS: usize = 16;
 
-/// The id of a request, and a digest of what it asks.
+/// The id of a request with a digest of its content.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RequestId {
     /// The id.
     #[serde(rename = "request_id")]
     pub id: String,
-    /// First digits of the BLAKE3 hash of the name of the tool, a line feed, and the arguments as they were sent, as JSON
-    /// without spaces and with sorted keys.
+    /// First digits of the BLAKE3 hash of the tool name, a line feed, and the sent arguments as JSON without spaces and with
+    /// sorted keys.
     #[serde(rename = "request_digest")]
     pub digest: String,
 }

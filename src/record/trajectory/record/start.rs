@@ -1,4 +1,4 @@
-//! The first line: what the run is, and by which rules it is played.
+//! The first line of a trajectory.
 
 use serde::{Deserialize, Serialize};
 use toml::Table;
@@ -13,17 +13,17 @@ use crate::stamp::{EarlierRun, StudyStamp};
 use novamind_voice::model::settings::ModelStamp;
 use novamind_world::fault::Fault;
 
-/// What the first line says of a run.
+/// The first line: manifest and rules of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Start {
     /// Format of the trajectory.
     pub format: u32,
-    /// Version that recorded the run.
+    /// Version that created the run.
     pub version: String,
     /// Number of the mechanics.
     #[serde(default = "first_mechanics")]
     pub mechanics: u32,
-    /// Run.
+    /// Id of the run.
     pub run: String,
     /// Seed.
     pub seed: u64,
@@ -34,57 +34,57 @@ pub struct Start {
     pub cash: f64,
     /// Scenario.
     pub scenario: String,
-    /// Parameters that differ from the shipped ones.
+    /// Parameters that differ from the bundled ones.
     #[serde(default)]
     pub overrides: Table,
-    /// The mechanism that is wrong on purpose; debug runs only.
+    /// The seeded fault; debug runs only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fault: Option<Fault>,
     /// Digest of the effective parameters.
     pub parameters_digest: String,
     /// Mode.
     pub mode: Mode,
-    /// Who plays, as the experimenter names them.
+    /// Label of the participant.
     pub participant: Option<String>,
-    /// Which text was agreed to, and when.
+    /// Consent of the participant.
     #[serde(default)]
     pub consent: Option<Consent>,
-    /// The study it belongs to.
+    /// The study of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub study: Option<StudyStamp>,
-    /// The lesson it belongs to.
+    /// The lesson of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lesson: Option<LessonStamp>,
-    /// The hand-out of a class that it began with.
+    /// The handout from which the run started.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub handout: Option<HandoutStamp>,
-    /// The language model that lends its voice; none in nearly all runs.
+    /// The language model that words texts, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub voice: Option<ModelStamp>,
-    /// By which rules it is played; none in runs of format 1.
+    /// Session rules; `None` in runs of format 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rules: Option<SessionRules>,
-    /// What the same person played before.
+    /// Earlier runs of the same participant.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub earlier_runs: Vec<EarlierRun>,
-    /// Where a branch comes from.
+    /// Origin of a branch.
     pub parent: Option<Parent>,
-    /// Whether every line ends with a sum; those of the first builds do not.
+    /// Whether every line has a sum; false in runs of the first builds.
     #[serde(default)]
     pub line_sums: bool,
 }
 
-/// Where a branch comes from.
+/// Origin of a branch.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Parent {
-    /// Run.
+    /// Id of the parent run.
     pub run: String,
-    /// Number of the last line that was copied.
+    /// Number of the last copied line.
     pub seq: u64,
 }
 
-/// Number of the mechanics of runs whose first line names none.
+/// Returns the number of the mechanics of runs whose first line has none.
 pub(crate) fn first_mechanics() -> u32 {
     1
 }

@@ -1,4 +1,4 @@
-//! Weeks: what was filed before them, what they came to, and where runs begin and end.
+//! Weeks, overrides, branches and ends of runs.
 
 use std::collections::BTreeMap;
 
@@ -11,32 +11,32 @@ use super::start::Parent;
 use super::{shortest, shortest_if_any};
 use novamind_tools::Forecast;
 
-/// What was filed before a week.
+/// The submission before a week.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Advance {
-    /// Why.
+    /// Rationale.
     pub rationale: String,
     /// Forecasts of cash, one for each horizon.
     pub forecasts: Vec<FiledForecast>,
-    /// Where it came from.
+    /// Source.
     pub via: Via,
-    /// What the registered calculations said.
+    /// Outputs of the registered calculations.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub calculations: Vec<Calculated>,
-    /// The id that the program gave the request.
+    /// Request id that the client sent.
     #[serde(flatten)]
     pub request: Option<RequestId>,
 }
 
 impl Advance {
-    /// Whether the naive projection filled in at least one forecast; none if none was filed.
+    /// Returns whether at least one forecast was filled in by the naive projection, or `None` without forecasts.
     pub fn filled_naively(&self) -> Option<bool> {
         let any = self.forecasts.iter().any(|forecast| forecast.filled_naively);
         (!self.forecasts.is_empty()).then_some(any)
     }
 }
 
-/// A forecast as a line has it.
+/// A forecast in a line.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FiledForecast {
     /// Days ahead.
@@ -50,73 +50,73 @@ pub struct FiledForecast {
     /// Upper end of the 95 % interval, dollars.
     #[serde(serialize_with = "shortest")]
     pub upper: f64,
-    /// Filled in by the naive projection, whole or in part.
+    /// Whether the naive projection filled it in, completely or partly.
     #[serde(default)]
     pub filled_naively: bool,
 }
 
 impl FiledForecast {
-    /// What was said.
+    /// Returns the forecast.
     pub fn said(self) -> Forecast {
         let FiledForecast { horizon_days, point, lower, upper, .. } = self;
         Forecast { horizon_days, point, lower, upper }
     }
 }
 
-/// Days that have passed, and the state after them.
+/// Simulated days and the state after them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Closing {
-    /// How many.
+    /// Number of days.
     pub days_run: u32,
     /// Figures by name.
     pub figures: Map<String, Value>,
     /// Cash after them, dollars.
     #[serde(serialize_with = "shortest")]
     pub cash: f64,
-    /// Hash of the state.
+    /// State hash.
     pub state_hash: String,
-    /// Beginnings of the hashes of its parts.
+    /// Prefixes of the hashes of the state's parts.
     pub parts: BTreeMap<String, String>,
 }
 
 /// A change of a parameter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Override {
-    /// Parameter, or a list or table of them: `table.key`, `group.S1.c_max_mean`.
+    /// Key of a parameter, or of a list or table of parameters: `table.key`, `group.S1.c_max_mean`.
     pub key: String,
-    /// Value when it was set.
+    /// Value before the change.
     pub old: Value,
-    /// Value from here on, or from a later day.
+    /// New value.
     pub new: Value,
-    /// First day that is simulated with the new value; none where it acts at once.
+    /// First day that is simulated with the new value; `None` if it acts at once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from_day: Option<u32>,
 }
 
-/// Where a branch comes from.
+/// Origin of a branch.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Branch {
-    /// The other run and its last line that was copied.
+    /// Parent run and its last copied line.
     #[serde(deserialize_with = "may_be_null")]
     pub from: Option<Parent>,
 }
 
-/// How a run ended.
+/// Reason of the end of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Ended {
-    /// It reached its last day.
+    /// The last day was reached.
     Horizon,
     /// Cash fell below zero.
     Bankruptcy,
-    /// Somebody gave it up.
+    /// The user abandoned the run.
     Abandoned,
-    /// The lesson that it was played in was over.
+    /// The lesson of the run was over.
     Lesson,
 }
 
 impl Ended {
-    /// Word as trajectories write it.
+    /// Returns the name in trajectories.
     pub fn id(self) -> &'static str {
         match self {
             Ended::Horizon => "horizon",
@@ -130,22 +130,22 @@ impl Ended {
 /// The end of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct End {
-    /// Why.
+    /// Reason.
     pub reason: Ended,
     /// Cash, dollars.
     #[serde(serialize_with = "shortest")]
     pub cash: f64,
-    /// Score; none for a run that was given up.
+    /// Score; `None` for an abandoned run or a lesson.
     #[serde(serialize_with = "shortest_if_any")]
     pub score: Option<f64>,
 }
 
-/// A field that may be null, but not missing.
+/// Accepts null, but not a missing field.
 fn may_be_null<'de, D: Deserializer<'de>>(field: D) -> Result<Option<Parent>, D::Error> {
     Option::deserialize(field)
 }
 
-/// A calculation and what it said before the last week.
+/// The output of a calculation before a week.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Calculated {
     /// Name.

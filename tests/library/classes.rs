@@ -174,7 +174,7 @@ fn a_class_of_thirty_is_collected_and_shown_as_it_was_played() {
                 "unreadable"
             }
             ClassFinding::Altered { problem, .. } => {
-                assert!(problem.contains("the line says 99999 for step 2"), "{problem}");
+                assert!(problem.contains("the event has 99999 for step 2"), "{problem}");
                 "altered"
             }
             ClassFinding::Twice { paths, .. } => {

@@ -175,8 +175,8 @@ fn shown(lesson: &Lesson) -> String {
             }
         }
     }
-    text += &format!("\nReference play: {}\nBad play: {}\n", plan.good.text, plan.bad.text);
-    for (heading, own) in [("Debrief", &lesson.debrief), ("For instructors", &lesson.for_teachers)] {
+    text += &format!("\nGood play: {}\nBad play: {}\n", plan.good.text, plan.bad.text);
+    for (heading, own) in [("Debrief", &lesson.debrief), ("For the teacher", &lesson.for_teachers)] {
         text += &format!("\n{heading}\n\n{}\n", lesson.filled(own));
     }
     text

@@ -102,7 +102,7 @@ pub fn in_words(own: &Debrief) -> Vec<String> {
 /// Where the own decisions parted from those of the good play, and what that was worth.
 pub fn comparison_in_words(own: &Debrief) -> Vec<String> {
     match &own.comparison {
-        DecisionComparison::Same => vec!["You made the same decisions as the reference play in every week.".to_owned()],
+        DecisionComparison::Same => vec!["You decided as the good play does, week by week.".to_owned()],
         DecisionComparison::Nothing => vec!["There was nothing to decide in this part.".to_owned()],
         DecisionComparison::Unknown => {
             vec!["Your decisions cannot be held against those of the good play in this run.".to_owned()]
@@ -115,7 +115,7 @@ pub fn comparison_in_words(own: &Debrief) -> Vec<String> {
             let mut lines: Vec<String> =
                 [told("good", &own.good), told("bad", &own.bad)].into_iter().flatten().collect();
             lines.push(format!(
-                "Your decisions first differ in week {}, day {}:",
+                "Week {}, day {}, is the first in which you decided otherwise:",
                 parting.week, parting.day
             ));
             let names = own.company_names();
@@ -200,11 +200,11 @@ fn effect_in_words(parting: &FirstDifference, own: &Debrief) -> String {
     let judged_by = own.judged_by.as_ref();
     let figure = judged_by.zip(effect.judged).map(|(judged, (own, with))| {
         let (own, with) = (of_figure(judged.figure, own), of_figure(judged.figure, with));
-        format!("{} of {with} rather than {own}, and ", judged.figure.name())
+        format!("{} of {with} instead of {own}, and ", judged.figure.name())
     });
     let told = format!(
-        "Re-run with these decisions of the reference play in week {}, and everything else as you decided it: {}\
-         cash of {} on day {} rather than {} ({}).",
+        "Simulated again with these decisions of the good play in week {}, and everything else as you decided it: {}\
+         cash of {} on day {} instead of {} ({}).",
         parting.week,
         figure.unwrap_or_default(),
         money(effect.with),
@@ -239,10 +239,10 @@ fn alone_or_together(effect: PartingEffect, own: &Debrief) -> String {
     };
     match reached > mine {
         true => format!(
-            " Copying only these would have cost you; with its later decisions, the reference play reaches {words}."
+            " Alone they would have cost you; with all that the good play decides later they come to {words}."
         ),
         false => {
-            format!(" Copying it would have cost you: you finished ahead of the reference play, which reaches {words}.")
+            format!(" They would have cost you: you came out ahead of the good play, which comes to {words}.")
         }
     }
 }

@@ -93,7 +93,7 @@ pub fn guess_and_outcome(question: &LessonQuestion) -> Vec<String> {
     let outcome = match question.outcome {
         Some(outcome) => Some(said("The answer", "It was", outcome)),
         None if question.guess.is_some() && question.told_at_end => {
-            Some("You will see the result at the end of this part.".to_owned())
+            Some("What comes of it is told at the end of this part.".to_owned())
         }
         None => None,
     };

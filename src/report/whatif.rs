@@ -39,7 +39,7 @@ pub fn branch_line(number: usize, branch: &BranchFigures) -> String {
     let name = name(&branch.edits);
     let since = match (branch.differs_on, branch.edits.is_empty()) {
         (_, true) => String::new(),
-        (Some(day), _) => format!(" · differs from day {day}"),
+        (Some(day), _) => format!(" · another company from day {day} on"),
         (None, _) => " · the same company on every day".to_owned(),
     };
     format!("{number}  {name}{since}")

@@ -148,7 +148,7 @@ fn guesses(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
         if asked.choices.is_empty() {
             let points = asked.points();
             let title = format!("{} What came of it, against the guess", asked.question);
-            let across = "guess; points on the line were exact".to_owned();
+            let across = "guess; on the line it was right".to_owned();
             let drawing = Drawing { title, across, points: &points, is_line: false, has_diagonal: true };
             text += &figure(asked.question, &drawing, ranking);
             continue;

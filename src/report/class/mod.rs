@@ -150,17 +150,13 @@ impl ClassView<'_> {
             return "cash on the last day that every run has reached".to_owned();
         };
         let of_part = |part: &LessonPart| match ranked_goal(part) {
-            // The bound after the colon is not part of the ranked figure.
-            Some((step, goal)) => {
-                let text = lesson.filled(&part.steps[step].goals[goal].text);
-                text.split(": ").next().unwrap_or_default().to_owned()
-            }
-            None => "final cash".to_owned(),
+            Some((step, goal)) => lesson.filled(&part.steps[step].goals[goal].text),
+            None => "cash at the end".to_owned(),
         };
         let goals: Vec<String> = lesson.plan.parts.iter().map(of_part).collect();
         let mean =
-            if goals.len() > 1 { "; mean of the parts, 0 for an unfinished part" } else { "" };
-        format!("{}, as a percentage of the reference play on the same seed{mean}", goals.join(" / "))
+            if goals.len() > 1 { "; the mean of the parts, 0 for one that is not finished" } else { "" };
+        format!("{}, as a share of the good play on the same seed{mean}", goals.join(" / "))
     }
 }
 

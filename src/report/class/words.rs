@@ -125,7 +125,7 @@ pub fn shown_in_words(view: &ClassView<'_>) -> String {
     let met = pitfalls(view);
     if let Some((most, others)) = met.split_first() {
         let students = count(most.students as u32, "student");
-        text += &format!("\nMost common pitfall: {}, by {students}. {}\n", most.name, most.say);
+        text += &format!("\nThe pitfall met most: {}, by {students}. {}\n", most.name, most.say);
         for own in others {
             text += &format!("  {}: {}\n", own.name, own.students);
         }

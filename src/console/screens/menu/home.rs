@@ -40,7 +40,7 @@ impl Menu {
             choices.push((HomeEntry::Continue, "Continue", short(run)));
         }
         let words = match self.practice() {
-            Some(_) => "continues your practice run",
+            Some(_) => "goes on in your practice run",
             None => "New here? A company for practice",
         };
         let tour = (HomeEntry::Tour, "Tour", words.to_owned());
@@ -64,7 +64,7 @@ impl Menu {
         }
         choices.push((HomeEntry::Lessons, "Lessons", "one idea each, 12 to 25 minutes".to_owned()));
         choices.push((HomeEntry::Handout, "Hand-out", "the file you got, such as S07.nm".to_owned()));
-        choices.push((HomeEntry::Class, "Class", "your students' results".to_owned()));
+        choices.push((HomeEntry::Class, "Class", "what came back of your students".to_owned()));
         choices.push((HomeEntry::Quit, "Quit", "everything confirmed is saved".to_owned()));
         choices
     }

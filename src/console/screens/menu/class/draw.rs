@@ -232,7 +232,7 @@ impl ClassPage {
             (least.min(value), most.max(value))
         });
         let head = Rect { height: 1.min(area.height), ..area };
-        canvas.text(head, "guess across, outcome up; points on the line were exact", Role::Dim);
+        canvas.text(head, "guess across, outcome up; on the line it was right", Role::Dim);
         let chart = Rect { y: area.y + head.height, height: area.height - head.height, ..area };
         let diagonal = (most > least).then_some([(least, least), (most, most)]);
         self.draw_points(canvas, chart, &points, (&compact, Unit::Number), diagonal);

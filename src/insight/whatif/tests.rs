@@ -440,7 +440,7 @@ fn offers_reach_the_same_companies_where_more_or_fewer_leads_come() {
         let (reached, under) = offers(&branch);
         assert_ne!(under, numbers, "{alternative}");
         let is_absent =
-            |(_, _, refusal): &(u32, String, Refusal)| refusal.message.contains("has not come here");
+            |(_, _, refusal): &(u32, String, Refusal)| refusal.message.contains("does not exist in this branch");
         let absent = refused.iter().filter(|refused| is_absent(refused)).count();
         assert_eq!(own.refused.iter().filter(|refused| is_absent(refused)).count(), absent, "{alternative}");
         assert_eq!(absent == 0, all_come, "{alternative}: {absent}");

@@ -83,7 +83,7 @@ impl PastDecision {
     /// Describes the status: rejected, undone or redone call, or first day of a parameter. Empty for other decisions.
     pub fn remark(&self) -> String {
         match self {
-            PastDecision::Call(PastCall { accepted: false, .. }) => "refused".to_owned(),
+            PastDecision::Call(PastCall { accepted: false, .. }) => "rejected".to_owned(),
             PastDecision::Call(PastCall { reversal: Some(Reversal::Undoes(line)), .. }) => {
                 format!("undoes line {line}")
             }

@@ -160,7 +160,7 @@ fn without_an_edit_a_run_with_set_parameters_reaches_its_states_from_wherever_it
     for day in [42, 35, 14, 21, 28, 0, 7, 42] {
         past.moment(day, &mut on).expect("the recorded state").expect("it is not stopped");
     }
-    // What waits for its day is kept with a moment.
+    // A stored state includes parameter changes for later days.
     let eve = past.moment(28, &mut on).expect("the recorded state").expect("it is not stopped");
     assert_eq!(eve.overrides.waiting().count(), 0, "what is decided on a day follows it");
     let later = past.moment(35, &mut on).expect("the recorded state").expect("it is not stopped");
@@ -188,7 +188,7 @@ fn a_run_whose_settings_of_parameters_are_dropped_is_the_run_without_them() {
     let outcome = counterfactual(&opening, past.between(0, 42), &edits, 42, &mut on).expect("an outcome");
     assert_eq!(outcome.weeks, plain.weeks());
     assert_ne!(outcome.weeks, changed.weeks());
-    // And so for those that wait at a moment.
+    // The same applies to changes that a stored state contains.
     let later = past.moment(35, &mut on).expect("the recorded state").expect("it is not stopped");
     let dropped = later.overrides.waiting().map(|change| change.seq).collect();
     let edits = Edits { dropped, ..Edits::default() };

@@ -180,11 +180,11 @@ mod tests {
             ("zzzz", "there is no figure zzzz; the figures are cash_change", 1),
             ("usage 4x", "a whole number is expected, not 4x", 7),
             ("usage 99999999999", "a whole number is expected, not 99999999999", 7),
-            ("churn(S1) 4 5", "5 is one word too many", 13),
+            ("churn(S1) 4 5", "unexpected 5 at the end", 13),
             ("churn(S12)", "S12 is not a group; did you mean S1", 7),
             ("churn(S1", "a closing bracket is missing", 9),
             ("churn()", "a group is missing", 7),
-            ("reputation 3", "reputation is a figure of a group; write for instance reputation(S1)", 1),
+            ("reputation 3", "reputation is a figure of a group; write for example reputation(S1)", 1),
             ("payments(S1)", "payments is a figure of the whole company; write payments without a group", 1),
         ] {
             let (said, at) = read(text).expect_err("a problem");

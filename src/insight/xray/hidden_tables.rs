@@ -11,7 +11,7 @@ use novamind_world::state::World;
 /// The connection of the x-ray, the only one with hidden tables.
 pub(crate) struct HiddenTables {
     connection: QueryConnection,
-    /// The number of the database that it reads.
+    /// Number of the database.
     database: u32,
     /// Last day in each table that contains every day.
     days: BTreeMap<&'static str, u32>,
@@ -51,7 +51,7 @@ impl HiddenTables {
         HiddenTables { connection, database, days: BTreeMap::new(), shown: None }
     }
 
-    /// The number of the database that it reads.
+    /// Number of the database.
     pub(crate) fn database(&self) -> u32 {
         self.database
     }

@@ -18,7 +18,6 @@ use novamind_session::{Workshop, verify, write_past};
 pub(super) struct HandedPast {
     manifest: Manifest,
     lines: Vec<Line>,
-    /// Its last day.
     pub(super) day: u32,
 }
 

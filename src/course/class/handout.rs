@@ -51,7 +51,6 @@ pub struct HandedRun {
     pub trajectory: String,
 }
 
-/// Content of a handout file.
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct HandoutFile {

@@ -114,12 +114,10 @@ pub(crate) fn first_difference(
 /// A re-simulation in progress.
 struct OpenBranch<'a> {
     edits: &'a Edits,
-    /// Remaining steps.
     moves: &'a [Move],
     simulation: Simulation,
     /// Discards all output.
     projection: RunDatabase,
-    /// Figures of the current week.
     week: WeekFigures,
     /// Figures of the current week by group.
     group_week: ByGroup<GroupWeek>,
@@ -229,7 +227,6 @@ impl<'a> OpenBranch<'a> {
         self.call(Some(call.seq), call.tool, changed.unwrap_or(&call.args), changed.is_some());
     }
 
-    /// Makes an added call.
     fn try_new(&mut self, tool: ToolId, args: &Value) {
         self.call(None, tool, args, true);
     }
@@ -378,7 +375,6 @@ impl<'a> OpenBranch<'a> {
         self.cash_before = cash;
     }
 
-    /// Records the state at the end of recorded days.
     fn close(&mut self, days: &PastDays) {
         if !self.told {
             return;

@@ -23,13 +23,10 @@ pub(crate) struct Past {
     path: PathBuf,
     /// Length of the file when it was read, bytes.
     length: u64,
-    /// Manifest of the run.
     pub(crate) manifest: Manifest,
-    /// Recorded steps.
     moves: Vec<Move>,
     /// Whether the run and, if any, its lesson have ended.
     pub(crate) ended: bool,
-    /// States by day.
     kept: BTreeMap<u32, Arc<KeptState>>,
 }
 
@@ -74,7 +71,6 @@ impl Past {
         between(&self.moves, from, until)
     }
 
-    /// Returns the last simulated day.
     pub(crate) fn last_day(&self) -> u32 {
         self.last_end(u32::MAX)
     }

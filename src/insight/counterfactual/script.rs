@@ -122,7 +122,6 @@ pub(crate) struct PastSetting {
     pub change: ParameterChange,
 }
 
-/// Recorded simulated days.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PastDays {
     /// Last day.

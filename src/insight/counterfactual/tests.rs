@@ -61,7 +61,6 @@ fn a_moment_leads_to_the_recorded_state_from_wherever_it_is_reached() {
     }
 }
 
-/// Simulates a week of a run with edits.
 fn week_under(edits: Edits) -> BranchOutcome {
     let mut past = Past::read(&recorded("development")).expect("a run");
     let eve = past.moment(35, &mut on).expect("the recorded state").expect("it is not stopped");
@@ -162,7 +161,7 @@ fn without_an_edit_a_run_with_set_parameters_reaches_its_states_from_wherever_it
     }
     // A stored state includes parameter changes for later days.
     let eve = past.moment(28, &mut on).expect("the recorded state").expect("it is not stopped");
-    assert_eq!(eve.overrides.waiting().count(), 0, "what is decided on a day follows it");
+    assert_eq!(eve.overrides.waiting().count(), 0, "decisions of a day follow that day");
     let later = past.moment(35, &mut on).expect("the recorded state").expect("it is not stopped");
     assert_eq!(later.overrides.waiting().count(), 2);
     let outcome = counterfactual(&later, past.between(35, 42), &Edits::default(), 42, &mut on);

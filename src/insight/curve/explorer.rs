@@ -16,9 +16,7 @@ use novamind_world::random::Streams;
 pub const SAMPLED_LEADS: u32 = 2000;
 /// Seed of these leads: the same in every run, and different from that of its customers.
 const SEED_OF_SAMPLE: u64 = 0x5EED;
-/// Number of prices on the curve.
 const STEPS: usize = 60;
-/// Quantiles of the curve.
 const SHARES: [f64; 3] = [0.1, 0.5, 0.9];
 
 /// The source of the curve.
@@ -127,7 +125,6 @@ impl Market {
     }
 }
 
-/// The current offer to a group.
 pub(super) struct OnOffer {
     pub(super) plans: ByPlan<PlanPoint>,
     pub(super) promotion: f64,
@@ -163,7 +160,6 @@ impl CurveExplorer {
         (most / 10.0).ceil().max(1.0) * 10.0
     }
 
-    /// Returns the point of the curve at a price.
     fn point(&self, price: f64) -> CurvePoint {
         let required = |market: &Market, share: &[f64]| market.sample.required(price, share, &market.params);
         let own = required(&self.markets[0], &SHARES);

@@ -136,7 +136,6 @@ fn new_call(day: u32, tool: ToolId, args: &Value) -> DecisionDifference {
     DecisionDifference { day, tool, seq: None, was: None, is: Some(args.clone()), again: None }
 }
 
-/// Returns the calls that edits change.
 fn differences(edits: &Edits, moves: &[Move], from: u32) -> Vec<DecisionDifference> {
     let opening = edits.opening.iter().map(|(tool, args)| new_call(from, *tool, args));
     let next = |added: &AddedCall| {

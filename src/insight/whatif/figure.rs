@@ -4,7 +4,6 @@ use crate::counterfactual::branch::BranchOutcome;
 use novamind_record::figures::{FigureUnit, WeekFigures};
 use novamind_world::events::DayFigures;
 
-/// Period of churn, days.
 const CHURN_DAYS: usize = 30;
 
 /// A figure at the end of a week.

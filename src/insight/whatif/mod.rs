@@ -70,7 +70,6 @@ pub struct WhatIf {
 /// The recorded days after the start of the branches.
 struct Parting {
     start: Arc<KeptState>,
-    /// Earlier days.
     earlier: Vec<DayFigures>,
     moves: Vec<Move>,
     until: u32,

@@ -37,7 +37,6 @@ impl TwoWeeks<'_> {
         (self.days().map(factor).collect(), self.days().map(|day| factor(day - week)).collect())
     }
 
-    /// Returns the inputs that differ, with their differences.
     pub(super) fn differing(&self) -> Vec<(Cause, Vec<Detail>)> {
         let (eve, end) = (&self.between.world.market, &self.after.end.world.market);
         let mut found = Vec::new();

@@ -49,7 +49,6 @@ pub(super) struct Laboratory {
     pub(super) sight: Sight,
     /// Tools that the player called.
     pub(super) calls: Vec<Candidate>,
-    /// Inputs that differ.
     pub(super) inputs: Vec<Candidate>,
     /// Days without any call; `None` until simulated.
     undone: Vec<DayFigures>,

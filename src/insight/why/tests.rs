@@ -58,7 +58,6 @@ fn week_of(session: &Session, at: usize) -> SimulatedWeek {
     }
 }
 
-/// Returns a figure of the last week of a session.
 fn last(session: &Session, quantity: WeekQuantity) -> f64 {
     quantity.of(&week_of(session, session.weeks().len() - 1))
 }

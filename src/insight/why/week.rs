@@ -144,7 +144,6 @@ impl Laboratory {
         Some(())
     }
 
-    /// Returns the contribution of each cause.
     fn value(
         &mut self,
         quantity: WeekQuantity,

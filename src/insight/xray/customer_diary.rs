@@ -81,7 +81,6 @@ pub struct CustomerDay {
     pub outcome: DayOutcome,
 }
 
-/// Records the days of one individual.
 pub(crate) struct CustomerDiary {
     customer: u32,
     group: Group,
@@ -104,7 +103,6 @@ impl CustomerDiary {
         CustomerDiary { customer, group, n, arrival_day, pages: Mutex::default() }
     }
 
-    /// Returns the recorded days.
     pub(crate) fn take(&self) -> CustomerPages {
         std::mem::take(&mut *self.pages())
     }

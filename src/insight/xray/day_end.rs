@@ -12,7 +12,6 @@ use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 use novamind_world::state::{PartHash, World};
 
-/// The end of a day.
 #[derive(Debug, Clone)]
 pub(crate) struct DayEnd {
     /// Hashes of the parts of the state, and of the facts of the day.
@@ -21,7 +20,6 @@ pub(crate) struct DayEnd {
     pub(crate) params: Params,
     /// Figures by name in a fixed order, including hidden ones.
     pub(crate) figures: Vec<(String, f64)>,
-    /// Active subscribers by customer number.
     pub(crate) customers: BTreeMap<u32, (Group, Subscriber)>,
 }
 
@@ -94,7 +92,6 @@ impl Album {
         Album { wanted: wanted.to_vec(), moments: Mutex::default() }
     }
 
-    /// Returns the end of a recorded day.
     pub(crate) fn take(&self, day: u32) -> Option<DayEnd> {
         self.moments.lock().unwrap_or_else(PoisonError::into_inner).remove(&day)
     }
@@ -121,12 +118,10 @@ impl Fingerprints {
         Fingerprints { parts: Mutex::default(), album: Album::of(wanted) }
     }
 
-    /// Returns the hashes of all recorded days.
     pub(crate) fn all(&self) -> Vec<Vec<PartHash>> {
         self.parts.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Returns the end of a selected day.
     pub(crate) fn take(&self, day: u32) -> Option<DayEnd> {
         self.album.take(day)
     }

@@ -28,15 +28,11 @@ use novamind_world::state::World;
 /// The groups and the market on a day.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct HiddenDay {
-    /// Discovered groups.
     pub(crate) known: ByGroup<bool>,
-    /// Factors of the leads.
     pub(crate) leads: ByGroup<LeadFactors>,
     /// Leads by word of mouth before the factors, by source group.
     pub(crate) word_of_mouth: ByGroup<Vec<(Group, f64)>>,
-    /// Actual leads.
     pub(crate) came: ByGroup<u32>,
-    /// Components of quality.
     pub(crate) quality: QualityDay,
     /// Components of the satisfaction change.
     pub(crate) satisfaction: ByGroup<SatisfactionDay>,
@@ -46,9 +42,7 @@ pub(crate) struct HiddenDay {
     pub(crate) banks: Banks,
     /// Threads at the start of the day that still await an answer, if they are recorded.
     pub(crate) threads: Vec<CompanyDay>,
-    /// The groups at the end of the day.
     pub(crate) groups: ByGroup<GroupEvening>,
-    /// The market at the end of the day.
     pub(crate) market: MarketEvening,
 }
 
@@ -65,14 +59,11 @@ pub(crate) struct Banks {
     pub(crate) own: ByGroup<f64>,
 }
 
-/// A group at the end of a day.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct GroupEvening {
     /// Study level; 0 before the group is discovered.
     pub(crate) info_level: u32,
-    /// Active subscriptions.
     pub(crate) active: u32,
-    /// Reputation.
     pub(crate) reputation: f64,
     /// Mean satisfaction and relationship of active subscriptions; `None` without any.
     pub(crate) mood: Option<(f64, f64)>,
@@ -94,7 +85,6 @@ pub(crate) struct GroupEvening {
     pub(crate) seat_count: f64,
 }
 
-/// The market at the end of a day.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct MarketEvening {
     /// Additions to curves since day 0.
@@ -119,7 +109,6 @@ pub(crate) struct Diary {
 struct Pages {
     /// Completed days, from day 1.
     days: Vec<HiddenDay>,
-    /// Current day.
     today: HiddenDay,
     /// Satisfaction changes by block.
     moods: MoodsByBlock,

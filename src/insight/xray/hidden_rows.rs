@@ -11,7 +11,6 @@ use novamind_world::state::World;
 
 use HiddenValue::{Null, Whole};
 
-/// Returns the rows of `hidden.groups` for a day.
 pub(crate) fn groups(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 15]> {
     let rows = Group::all().map(|group| {
         let own: GroupEvening = seen.groups[group];
@@ -37,7 +36,6 @@ pub(crate) fn groups(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 15]> {
     rows.collect()
 }
 
-/// Returns the rows of `hidden.drift` for a day.
 pub(crate) fn drift(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 5]> {
     let drift = &seen.market.drift;
     let rows = Group::all().map(|group| {
@@ -79,7 +77,6 @@ pub(crate) fn factors(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 16]> {
     rows.collect()
 }
 
-/// Returns the rows of `hidden.competitors` for a day.
 pub(crate) fn competitors(day: u32, seen: &HiddenDay) -> [HiddenValue; 8] {
     let event = seen.market.event.as_ref().map(|(event, _)| event);
     [
@@ -94,7 +91,6 @@ pub(crate) fn competitors(day: u32, seen: &HiddenDay) -> [HiddenValue; 8] {
     ]
 }
 
-/// Returns the rows of `hidden.pmi` for a day.
 pub(crate) fn pmi(day: u32, seen: &HiddenDay) -> [HiddenValue; 8] {
     let reading = seen.market.measured.as_ref().map(|(reading, _)| reading);
     [
@@ -109,7 +105,6 @@ pub(crate) fn pmi(day: u32, seen: &HiddenDay) -> [HiddenValue; 8] {
     ]
 }
 
-/// Returns a row of `hidden.threads`.
 pub(crate) fn thread(own: &CompanyDay) -> [HiddenValue; 22] {
     let accepts = |plan: Plan| {
         let judged = own.plans[plan];

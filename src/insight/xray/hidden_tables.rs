@@ -11,7 +11,6 @@ use novamind_world::state::World;
 /// The connection of the x-ray, the only one with hidden tables.
 pub(crate) struct HiddenTables {
     connection: QueryConnection,
-    /// Number of the database.
     database: u32,
     /// Last day in each table that contains every day.
     days: BTreeMap<&'static str, u32>,
@@ -34,7 +33,6 @@ pub(crate) enum ShownCustomers {
 }
 
 impl ShownCustomers {
-    /// Returns the current state of a world.
     pub(crate) fn now(world: &World) -> ShownCustomers {
         ShownCustomers::Now { customers: world.customers.hash(), companies: hash_of(&world.enterprise) }
     }
@@ -51,7 +49,6 @@ impl HiddenTables {
         HiddenTables { connection, database, days: BTreeMap::new(), shown: None }
     }
 
-    /// Number of the database.
     pub(crate) fn database(&self) -> u32 {
         self.database
     }

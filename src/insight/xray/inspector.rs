@@ -13,9 +13,7 @@ use novamind_tools::Refusal;
 pub(super) struct Observations {
     /// The copy that re-simulates the days; `None` before the first question.
     pub(super) shadow: Option<Shadow>,
-    /// Hidden state of its days.
     pub(super) diary: Arc<Diary>,
-    /// Breakpoints of the run.
     pub(super) breakpoints: Breakpoints,
     /// The hidden tables; `None` before the first query.
     pub(super) hidden_tables: Option<HiddenTables>,

@@ -123,7 +123,6 @@ pub struct QualityEquation {
 }
 
 impl QualityEquation {
-    /// Creates the equation of a group on a day.
     pub(crate) fn of(group: Group, day: u32, seen: &QualityDay) -> QualityEquation {
         QualityEquation {
             group,

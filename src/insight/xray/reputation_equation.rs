@@ -45,7 +45,6 @@ pub struct LeastChanges {
     pub spill: f64,
 }
 
-/// Reputations of all groups on a day.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ReputationDay {
     before: ByGroup<f64>,
@@ -60,7 +59,6 @@ pub(crate) struct ReputationDay {
 }
 
 impl ReputationDay {
-    /// Starts a day with these reputations.
     pub(crate) fn in_the_morning(book: &ReputationBook) -> ReputationDay {
         ReputationDay { before: ByGroup::from_fn(|group| book.of(group)), ..ReputationDay::default() }
     }
@@ -124,7 +122,6 @@ pub struct ReputationEquation {
 }
 
 impl ReputationEquation {
-    /// Creates the equation of a group on a day, with its reputation of recent days.
     pub(crate) fn of(group: Group, day: u32, seen: &ReputationDay, evenings: Vec<f64>) -> ReputationEquation {
         ReputationEquation {
             group,
@@ -164,7 +161,6 @@ pub struct Spillover {
 }
 
 impl Spillover {
-    /// Creates the spillover of a day with its discovered groups.
     pub(crate) fn of(day: u32, known: &ByGroup<bool>, seen: ReputationDay) -> Spillover {
         let known = Group::all().filter(|group| known[*group]).collect();
         let ReputationDay { own, spills, least, .. } = seen;

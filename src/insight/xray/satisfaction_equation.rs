@@ -119,7 +119,6 @@ impl AddAssign for MoodSums {
     }
 }
 
-/// Satisfaction of a group on a day.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct SatisfactionDay {
     sums: MoodSums,

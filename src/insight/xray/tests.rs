@@ -30,7 +30,6 @@ use novamind_world::random::{Part, Streams};
 use novamind_world::retention::renewal::RenewalContext;
 use novamind_world::state::World;
 
-/// Compared days and groups.
 const DAYS: [u32; 8] = [1, 2, 31, 62, 66, 91, 98, 119];
 
 /// Opens a copy of the recorded run that uses every setting.
@@ -245,7 +244,7 @@ fn rivals_and_drift_are_those_of_the_world_and_the_next_move_is_the_one_that_com
     }
 }
 
-/// A debug run in memory with subscribers and development.
+/// Creates a debug run in memory with subscribers and development.
 fn run_in_memory(seed: u64) -> Session {
     let new = NewRun {
         seed: Some(seed),
@@ -277,7 +276,6 @@ fn inside(session: &Session) -> Xray<'_> {
     session.xray().expect("a debug run")
 }
 
-/// Number of days with compared draws.
 const DRAWN_DAYS: u32 = 150;
 
 #[test]
@@ -413,7 +411,7 @@ fn what_is_bought_next_is_what_was_told_of_it() {
             assert_eq!(told.streams[0].follows, Follows::Found(new));
             found += u32::from(new.is_some());
         }
-        // Until both projects are finished.
+        // Wait until both projects are finished.
         for _ in 0..45 {
             session.step(1, &mut |_| {}).expect("a day");
         }

@@ -31,7 +31,6 @@ pub(crate) struct Words<'a> {
 }
 
 impl<'a> Words<'a> {
-    /// Creates a reader of a text.
     pub(crate) fn of(text: &'a str) -> Words<'a> {
         let text = text.split('#').next().unwrap_or_default().trim_end();
         let (mut tokens, mut rest, mut column) = (Vec::new(), text, 1);
@@ -189,7 +188,6 @@ impl FromStr for Condition {
     }
 }
 
-/// A predicate on a figure.
 enum Judgement {
     Compared(Relation, f64),
     Moved(Direction),

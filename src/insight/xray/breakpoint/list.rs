@@ -24,7 +24,6 @@ pub(crate) struct Breakpoints {
 }
 
 impl Breakpoints {
-    /// Returns the breakpoints by number.
     pub(crate) fn all(&self) -> &[Breakpoint] {
         &self.set
     }
@@ -46,7 +45,6 @@ impl Breakpoints {
         Some(self.set.remove(at))
     }
 
-    /// Removes and returns all breakpoints.
     pub(crate) fn clear_all(&mut self) -> Vec<Breakpoint> {
         std::mem::take(&mut self.set)
     }

@@ -65,7 +65,6 @@ impl Inspector<'_> {
         Ok(all.into_iter().filter(|own| own.is_true && !own.was_true).collect())
     }
 
-    /// Returns the state of a condition on each day.
     fn judged_days(&mut self, what: &str, condition: Condition) -> Result<Vec<Judged>, Refusal> {
         let look = Look::begin(self.run, what, &condition.to_string(), None)?;
         let today = look.day();

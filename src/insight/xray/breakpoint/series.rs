@@ -13,14 +13,10 @@ use novamind_world::market::surges::surge_factor;
 use novamind_world::params::Params;
 use novamind_world::state::World;
 
-/// Figures of a day.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct MeasuredDay {
-    /// Figures of the company.
     pub(crate) figures: DayFigures,
-    /// Figures of the groups.
     pub(crate) groups: ByGroup<MeasuredGroup>,
-    /// Whether competitors moved.
     pub(crate) rival: bool,
     /// Whether drift was applied.
     pub(crate) drift: bool,
@@ -57,7 +53,6 @@ pub(crate) struct Series {
 #[derive(Debug, Default)]
 struct SeriesPages {
     days: Vec<MeasuredDay>,
-    /// Figures of the current day.
     today: DayFigures,
 }
 

@@ -76,7 +76,6 @@ impl WriteDiary {
         self.pages.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Returns the value in a world.
     fn read(&self, world: &World) -> f64 {
         match self.target {
             WriteTarget::Reputation(group) => world.market.reputation.of(group),

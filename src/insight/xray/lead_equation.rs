@@ -47,7 +47,7 @@ impl LeadFactor {
 
     /// Returns the name.
     pub fn in_words(self) -> &'static str {
-        ["reputation", "market room", "calendar", "economy", "own posts", "surges"][self as usize]
+        ["reputation", "unused market", "calendar", "economy", "own posts", "surges"][self as usize]
     }
 
     /// Returns the factor with a letter.

@@ -73,8 +73,10 @@ pub(super) fn examine(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Result<Evi
     let lesson = lesson.filter(|lesson| stamp.is_some_and(|stamp| stamp.digest == lesson.digest));
     let part = stamp.map_or(0, |stamp| (stamp.part as usize).wrapping_sub(1));
     if let Some(lesson) = lesson.filter(|lesson| part >= lesson.plan.parts.len()) {
-        let message =
-            format!("its first event names a part that the lesson does not have; it has {}", lesson.plan.parts.len());
+        let message = format!(
+            "its first event names a part that the lesson does not have; it has {}",
+            lesson.plan.parts.len()
+        );
         return Err(RunError::NotPossible(message));
     }
     let standing = lesson.map(|lesson| LessonStanding::of(lesson.clone(), part, &trajectory.lines));

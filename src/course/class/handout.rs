@@ -219,9 +219,9 @@ impl Handout {
             .and_then(|()| Manifest::read(folder))
             .and_then(|manifest| match manifest.handout.as_ref() == Some(&self.stamp) {
                 true => Ok(()),
-                false => Err(RunError::NotPossible(
-                    "the run of the handout belongs to another handout".to_owned(),
-                )),
+                false => {
+                    Err(RunError::NotPossible("the run of the handout belongs to another handout".to_owned()))
+                }
             });
         if written.is_err() {
             let _ = std::fs::remove_dir_all(folder);

@@ -226,7 +226,8 @@ impl PlayedPart {
             return Err(Refusal::new("not_in_a_lesson", message));
         };
         if lesson_step(session).is_some() {
-            let message = "the debrief is available when this part of the lesson has ended; lesson shows the task";
+            let message =
+                "the debrief is available when this part of the lesson has ended; lesson shows the task";
             return Err(Refusal::new("lesson_not_over", message));
         }
         let manifest = session.manifest();

@@ -113,7 +113,9 @@ impl Opening<'_> {
         let in_force = self.params.value(key).map_err(unknown)?;
         let not_allowed = |problem| Refusal::at(key, "parameter_not_allowed", problem);
         if let (Value::String(word), false) = (value, in_force.is_str()) {
-            return Err(not_allowed(format!("{word} is not a valid value of {key}, which is {in_force} now")));
+            return Err(not_allowed(format!(
+                "{word} is not a valid value of {key}, which is {in_force} now"
+            )));
         }
         let value =
             value_of_json(value).ok_or_else(|| not_allowed(format!("{key} cannot be or contain null")))?;
@@ -187,7 +189,8 @@ fn move_of(seq: u64, moves: &[Move]) -> Result<(), Refusal> {
 }
 
 fn no_line(seq: u64) -> Refusal {
-    let message = format!("line {seq} is not a decision in the weeks of this what-if; whatif WEEK lists the decisions");
+    let message =
+        format!("line {seq} is not a decision in the weeks of this what-if; whatif WEEK lists the decisions");
     Refusal::at("line", "line_unknown", message)
 }
 

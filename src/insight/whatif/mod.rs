@@ -281,6 +281,7 @@ impl WhatIf {
         Ok(Some(Futures::of(after, days, branches)))
     }
 
+    /// Returns the number of days per week of the run.
     pub fn days_per_week(&self) -> u32 {
         self.past.days_per_week()
     }

@@ -439,8 +439,9 @@ fn offers_reach_the_same_companies_where_more_or_fewer_leads_come() {
         let Adopted { session: branch, refused } = adopted.expect("a branch");
         let (reached, under) = offers(&branch);
         assert_ne!(under, numbers, "{alternative}");
-        let is_absent =
-            |(_, _, refusal): &(u32, String, Refusal)| refusal.message.contains("does not exist in this branch");
+        let is_absent = |(_, _, refusal): &(u32, String, Refusal)| {
+            refusal.message.contains("does not exist in this branch")
+        };
         let absent = refused.iter().filter(|refused| is_absent(refused)).count();
         assert_eq!(own.refused.iter().filter(|refused| is_absent(refused)).count(), absent, "{alternative}");
         assert_eq!(absent == 0, all_come, "{alternative}: {absent}");

@@ -103,7 +103,9 @@ impl Causes {
         let message = match last {
             0 | 1 => "why compares a week with the week before. Run two weeks first".to_owned(),
             last => {
-                format!("week {asked} cannot be compared with the week before; choose a week from 2 to {last}")
+                format!(
+                    "week {asked} cannot be compared with the week before; choose a week from 2 to {last}"
+                )
             }
         };
         Err(Refusal::at("week", "week_unknown", message))

@@ -73,8 +73,10 @@ impl Laboratory {
         let after = self.without(Without { calls: 0, inputs: 0 });
         let values = (quantity.of(self.week_before()), quantity.of(after));
         if values.0.is_nan() || values.1.is_nan() {
-            let message =
-                format!("{} has no value in one of the two weeks, because there was nothing to count", quantity.name());
+            let message = format!(
+                "{} has no value in one of the two weeks, because there was nothing to count",
+                quantity.name()
+            );
             return Err(Refusal::at("figure", "no_value", message));
         }
         let (mut calls, mut inputs) = (groups(&self.calls), self.groups_of_inputs());

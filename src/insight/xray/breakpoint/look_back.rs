@@ -34,7 +34,8 @@ impl Inspector<'_> {
     pub fn look_back(&mut self, condition: Condition) -> Result<LookBack, Refusal> {
         let all = self.judged_days("back", condition)?;
         let last = |is_true: bool| all.iter().rev().find(|own| own.is_true == is_true).copied();
-        let today = *all.last().ok_or_else(|| Refusal::new("not_readable", "no day could be re-simulated"))?;
+        let today =
+            *all.last().ok_or_else(|| Refusal::new("not_readable", "no day could be re-simulated"))?;
         Ok(LookBack { condition, today, last_true: last(true), last_false: last(false) })
     }
 

@@ -89,6 +89,8 @@ impl Inspector<'_> {
         };
         let diary = Arc::new(WriteDiary::of(target, day, opening));
         look.watch_up_to(self.run, day, diary.clone())?;
-        diary.take().ok_or_else(|| Refusal::new("not_readable", format!("day {day} could not be re-simulated")))
+        diary
+            .take()
+            .ok_or_else(|| Refusal::new("not_readable", format!("day {day} could not be re-simulated")))
     }
 }

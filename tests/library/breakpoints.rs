@@ -520,7 +520,7 @@ fn conditions_that_cannot_be_read_say_where_and_what_is_near() {
         ("churn(S1) > 0.05 over 1.5", 23, "a whole number is expected, not 1.5"),
         ("cash(S1) < 5", 1, "cash is a figure of the whole company"),
         ("reputation falls", 1, "reputation is a figure of a group"),
-        ("reputation(S1) falls over 7", 22, "reputation is read on one day"),
+        ("reputation(S1) falls over 7", 22, "reputation has a value for one day"),
         ("event comet", 7, "comet is not an event; "),
         ("event rival tomorrow", 13, "unexpected tomorrow at the end"),
     ] {

@@ -267,7 +267,7 @@ fn an_altered_hand_out_is_refused_and_says_what_to_do() {
         assert_ne!(text, whole);
         fs::write(&path, text).expect("written");
         let error = Handout::read(&path).expect_err("it is refused").to_string();
-        assert!(error.contains("S01.nm") && error.contains("ask for the hand-out again"), "{error}");
+        assert!(error.contains("S01.nm") && error.contains("Ask for the handout again"), "{error}");
     }
     fs::write(&path, whole.replacen("format = 1", "format = 9", 1)).expect("written");
     assert!(Handout::read(&path).expect_err("a later format").to_string().contains("a later version"));

@@ -366,5 +366,5 @@ fn a_run_is_handed_out_under_labels_and_names_of_their_own() {
     assert!(text.contains("Ranked by cash on the last day that every run has reached"), "{text}");
 
     let refused = Class::create(&school.folder(), &lesson(), 3).expect_err("the class is there").to_string();
-    assert!(refused.contains("name another folder"), "{refused}");
+    assert!(refused.contains("choose another folder"), "{refused}");
 }

@@ -1,7 +1,6 @@
-//! Courses: lessons as a student meets them, and classes of students with their hand-outs (docs/lessons/classes.md).
+//! Lessons from the student's side, and classes of students with their handouts (docs/lessons/classes.md).
 //!
-//! What a lesson is, and the standing of a student, is data of `novamind-record`. What a lesson does in a run while weeks pass
-//! is in `novamind-session`.
+//! `novamind-record` defines lessons and the standing of a student. `novamind-session` applies a lesson while weeks pass.
 
 mod class;
 mod lesson;

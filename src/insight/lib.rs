@@ -1,7 +1,6 @@
-//! Simulated explanations of a run: why its figures changed, the results of other decisions, the participation curve of a group,
-//! and hidden state.
+//! Simulated explanations of a run: causes of changes, results of other decisions, participation curves, and hidden state.
 //!
-//! Every answer checks first who may see it. Hidden state comes from looks of the session, which are refused or recorded.
+//! Every function checks permissions first. Hidden state comes from inspections of the session, which are rejected or recorded.
 
 mod counterfactual;
 mod curve;

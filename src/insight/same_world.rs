@@ -1,4 +1,4 @@
-//! The world of a run that is over, for somebody else to play: the same luck, from day 0.
+//! The world of a finished run for another player: the same random draws, from day 0.
 
 use std::path::Path;
 
@@ -17,46 +17,46 @@ use novamind_tools::Refusal;
 #[derive(Debug)]
 pub struct SameWorld {
     manifest: Manifest,
-    /// The day on which scores in it are compared: its last one, or the last of a part of a lesson.
+    /// Day on which scores are compared: the last day of the run, or of its part of a lesson.
     pub last_day: u32,
 }
 
 impl SameWorld {
-    /// The world of the run in a folder.
+    /// Reads the world of the run in a folder.
     ///
     /// # Errors
-    /// `not_in_this_mode` while the run goes on and is no debug run, or where a study shows no results; `not_possible` where
-    /// parameters were set on the way, or a lesson played weeks before the student began; `not_readable`.
+    /// `not_in_this_mode` if the run is unfinished and not a debug run, or if its study shows no results; `not_possible` if
+    /// parameters were changed during the run, or if its lesson starts with preset decisions; `not_readable`.
     pub fn of(folder: &Path) -> Result<SameWorld, Refusal> {
         let past = Past::read(folder).map_err(|error| not_readable(&error))?;
         if sight(&past.manifest, past.ended)? != Sight::All {
-            let message = "opponents play the world of a run that is over: end it first";
+            let message = "opponents can play only the world of a finished run. End this run first";
             return Err(Refusal::new("not_in_this_mode", message));
         }
         let not_possible = |message: &str| Err(Refusal::new("not_possible", message));
         if past.between(0, u32::MAX).iter().any(|step| matches!(step, Move::Parameter(_))) {
             return not_possible(
-                "parameters were set in this run while it went on: nobody else meets that world",
+                "parameters were changed during this run, so its world cannot be reproduced",
             );
         }
         if begins_played(folder, &past.manifest).map_err(|error| not_readable(&error))? {
             return not_possible(
-                "this part of the lesson begins with a company: policies begin with an empty one",
+                "this part of the lesson starts with an existing company, but opponents start with an empty one",
             );
         }
         let last_day = if past.manifest.lesson.is_some() { past.last_day() } else { past.manifest.days };
         Ok(SameWorld { manifest: past.manifest, last_day })
     }
 
-    /// Seed of its luck.
+    /// Returns the seed of the random draws.
     pub fn seed(&self) -> u64 {
         self.manifest.seed
     }
 
-    /// Begins a debug run in it, in memory and without a database.
+    /// Starts a debug run in this world, in memory and without a database.
     ///
     /// # Errors
-    /// The parameters of the run are none of this program.
+    /// Returns an error if this program does not support the parameters of the run.
     pub fn begin(&self) -> Result<Session, RunError> {
         let manifest = Manifest {
             id: new_id(),
@@ -78,7 +78,7 @@ impl SameWorld {
     }
 }
 
-/// Whether a lesson played, or decided, something before its student did.
+/// Whether a lesson starts with simulated weeks or preset decisions.
 fn begins_played(folder: &Path, manifest: &Manifest) -> Result<bool, RunError> {
     let Some(stamp) = &manifest.lesson else { return Ok(false) };
     let lesson = Lesson::of_run(folder, &stamp.name)?;
@@ -109,14 +109,14 @@ mod tests {
         let runs = tempfile::tempdir().expect("a folder");
         let mut sandbox = played(runs.path(), Mode::Sandbox, 3, None);
         let folder = sandbox.folder().expect("a folder").to_owned();
-        assert_eq!(SameWorld::of(&folder).expect_err("it goes on").code, "not_in_this_mode");
-        sandbox.end().expect("it is given up");
+        assert_eq!(SameWorld::of(&folder).expect_err("an unfinished run").code, "not_in_this_mode");
+        sandbox.end().expect("the run ends");
         sandbox.save().expect("it is saved");
-        SameWorld::of(&folder).expect("it is over");
+        SameWorld::of(&folder).expect("a finished run");
         let mut debug = played(runs.path(), Mode::Debug, 3, None);
         debug.set_parameter("demand_surge.probability", &0.5.into(), None).expect("it is set");
         debug.save().expect("it is saved");
-        let closed = SameWorld::of(debug.folder().expect("a folder")).expect_err("it was set");
+        let closed = SameWorld::of(debug.folder().expect("a folder")).expect_err("a changed parameter");
         assert_eq!(closed.code, "not_possible");
     }
 }

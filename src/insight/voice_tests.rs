@@ -1,4 +1,4 @@
-//! Tests that a run is simulated again with the recorded scores of its language model.
+//! Re-simulation uses the recorded scores of the language model.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ use novamind_record::trajectory::Trajectory;
 use novamind_record::trajectory::record::{Record, Via, VoiceAnswer};
 use novamind_session::{Manner, NewRun, Origin, Session, Storage, Stub, read_recorded, verify};
 
-/// Three weeks of a company that has customers, with a post before the second.
+/// Plays three weeks of a company with customers, with a post before the second week.
 fn played(runs: &Path, configuration: &Configuration) -> Session {
     let new = NewRun {
         seed: Some(7),
@@ -74,7 +74,7 @@ fn a_branch_that_keeps_its_decisions_takes_over_what_was_said() {
     let stub = Stub::start(Manner::Well);
     let session = played(runs.path(), &stub.named(true, true, 30));
     drop(stub);
-    // The post is made again.
+    // The branch posts again.
     let on = &mut |_| std::ops::ControlFlow::Continue(());
     let kept = branch_with_decisions(&session, 1, &[], Mode::Sandbox, on).expect("a branch").session;
     assert_eq!(kept.state_hash(), session.state_hash());

@@ -234,7 +234,7 @@ fn a_stop_in_the_middle_of_a_week_is_a_step_line_and_the_run_verifies() {
     assert_eq!(removed[0].condition.to_string(), "subscribers(S1) < 0");
     assert_eq!(
         session.inspect().clear_breakpoints(Some(1)).expect_err("it is gone").to_string(),
-        "breakpoint_unknown (number): there is no breakpoint 1; none is set"
+        "breakpoint_unknown (number): there is no breakpoint 1; no breakpoint is set"
     );
     session.inspect().run_until_breakpoint(2, &mut |_| {}).expect("days without breakpoints");
     let place = session.folder().expect("a folder").to_owned();
@@ -520,9 +520,9 @@ fn conditions_that_cannot_be_read_say_where_and_what_is_near() {
         ("churn(S1) > 0.05 over 1.5", 23, "a whole number is expected, not 1.5"),
         ("cash(S1) < 5", 1, "cash is a figure of the whole company"),
         ("reputation falls", 1, "reputation is a figure of a group"),
-        ("reputation(S1) falls over 7", 22, "reputation is read on one day"),
+        ("reputation(S1) falls over 7", 22, "reputation has a value for one day"),
         ("event comet", 7, "comet is not an event; "),
-        ("event rival tomorrow", 13, "tomorrow is one word too many"),
+        ("event rival tomorrow", 13, "unexpected tomorrow at the end"),
     ] {
         let problem = text.parse::<Condition>().expect_err(text);
         assert!(problem.message.contains(said), "{text}: {}", problem.message);

@@ -99,8 +99,8 @@ fn a_class_goes_from_hand_outs_to_the_projector() {
     assert_eq!(teacher.run(&["runs", "import", &archive]).code, 0);
     assert_eq!(teacher.run(&["report", &id(&run)]).code, 0);
     fs::write(room.handout("S03"), "nothing").expect("written");
-    machines[0].play(&["--handout", &room.handout("S03")], "").fails(2, &["no hand-out of a class"]);
-    room.teacher.run(&["class", "show", "nowhere"]).fails(2, &["holds no class"]);
+    machines[0].play(&["--handout", &room.handout("S03")], "").fails(2, &["not a handout of a class"]);
+    room.teacher.run(&["class", "show", "nowhere"]).fails(2, &["contains no class"]);
 }
 
 #[test]

@@ -124,5 +124,5 @@ fn opponents_play_the_world_of_a_run_that_is_over() {
     assert!(text.contains("same luck") && text.contains("harvest-late"), "{text}");
     let other = Home::new();
     other.two_weeks();
-    other.run(&["lab", "opponents", "latest"]).fails(1, &["end it first"]);
+    other.run(&["lab", "opponents", "latest"]).fails(1, &["End this run first"]);
 }

@@ -1,4 +1,4 @@
-//! `class.toml`: what was handed out, and to whom (docs/formats/class.md#classtoml).
+//! `class.toml`: the lesson or run of a class, and its students (docs/formats/class.md#classtoml).
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -14,27 +14,25 @@ use novamind_record::lesson::Lesson;
 use novamind_record::stamp::HandoutStamp;
 use novamind_session::new_id;
 
-/// Name of the file in the folder of the class.
 const CLASS_FILE: &str = "class.toml";
 
-/// Most students of a class.
 const MOST_STUDENTS: u32 = 999;
 
-/// A class: what was handed out, and to whom.
+/// A class: the lesson or run that was handed out, and its students.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Class {
     /// Format of the file.
     pub format: u32,
-    /// Version of the program that made it.
+    /// Version of the program that created the class.
     pub program: String,
     /// Name of the class: eight hexadecimal digits.
     pub class: String,
-    /// When it was made, RFC 3339.
+    /// Creation time, RFC 3339.
     pub created: String,
-    /// The lesson, if that was handed out.
+    /// The lesson, if a lesson was handed out.
     pub lesson: Option<ClassLesson>,
-    /// The run, if that was handed out.
+    /// The run, if a run was handed out.
     pub run: Option<ClassPast>,
     /// The students.
     #[serde(rename = "student")]
@@ -51,7 +49,7 @@ pub struct ClassLesson {
     pub digest: String,
 }
 
-/// The run whose past every student begins with.
+/// The run that every student continues.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ClassPast {
@@ -67,13 +65,13 @@ pub struct ClassPast {
 pub struct ClassStudent {
     /// Label.
     pub label: String,
-    /// The run that their hand-out begins.
+    /// Name of the run that the handout creates.
     pub run: String,
-    /// Seal of their hand-out.
+    /// Seal of the handout.
     pub seal: String,
 }
 
-/// What is to be handed out.
+/// The content of a new class.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ToHandOut {
     /// A lesson.
@@ -83,19 +81,19 @@ pub enum ToHandOut {
 }
 
 impl Class {
-    /// Makes a class: its folder, `class.toml` and a hand-out for every student.
+    /// Creates the folder of a class with `class.toml` and a handout for every student.
     ///
     /// # Errors
-    /// The folder holds a class already, or cannot be written; the number of students is not from 1 to
-    /// 999; the run cannot be handed out.
+    /// Returns an error if the folder already contains a class or cannot be written, if `students` is not from 1 to 999, or if
+    /// the run cannot be handed out.
     pub fn create(folder: &Path, what: &ToHandOut, students: u32) -> Result<Class, RunError> {
         if !(1..=MOST_STUDENTS).contains(&students) {
-            let message = format!("a class has from 1 to {MOST_STUDENTS} students, not {students}");
+            let message = format!("a class needs 1 to {MOST_STUDENTS} students, not {students}");
             return Err(RunError::NotPossible(message));
         }
         if folder.join(CLASS_FILE).exists() {
             let message = format!(
-                "{} holds a class already: name another folder. Nothing was changed",
+                "{} already contains a class; choose another folder. Nothing was changed",
                 folder.display()
             );
             return Err(RunError::Exists(message));
@@ -131,7 +129,7 @@ impl Class {
             let seal = Handout { label: label.clone(), stamp, content }.write(folder)?;
             class.students.push(ClassStudent { label, run, seal });
         }
-        let text = toml::to_string(&class).expect("a class holds plain values");
+        let text = toml::to_string(&class).expect("a class contains plain values");
         write_whole(&folder.join(CLASS_FILE), text.as_bytes())?;
         Ok(class)
     }
@@ -139,13 +137,13 @@ impl Class {
     /// Reads the class of a folder.
     ///
     /// # Errors
-    /// There is none, or its file is damaged or of a later format.
+    /// Returns an error if the folder contains no class, or if its file is damaged or has a later format.
     pub fn read(folder: &Path) -> Result<Class, RunError> {
         let path = folder.join(CLASS_FILE);
         let text = match std::fs::read_to_string(&path) {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 return Err(RunError::NotPossible(format!(
-                    "{} holds no class: `novamind class new LESSON --out {}` makes one",
+                    "{} contains no class. Create one: `novamind class new LESSON --out {}`",
                     folder.display(),
                     folder.display()
                 )));
@@ -155,16 +153,16 @@ impl Class {
         let class: Class = toml::from_str(&text).map_err(|error| RunError::Damaged {
             line: error.span().map_or(1, |span| text[..span.start].matches('\n').count() + 1),
             problem: error.message().to_owned(),
-            safe: "Hand-outs and runs were not touched; restore class.toml from a copy".to_owned(),
+            safe: "Handouts and runs were not changed; restore class.toml from a copy".to_owned(),
             path,
         })?;
         Ok(class)
     }
 
-    /// The lesson that was handed out, as it is kept with the class; none where a run was.
+    /// Reads the copy of the lesson in the folder of the class. Returns `None` if a run was handed out.
     ///
     /// # Errors
-    /// Its files are missing, wrong, or not those that were handed out.
+    /// Returns an error if its files are missing or invalid, or if they differ from the lesson that was handed out.
     pub fn lesson_kept(&self, folder: &Path) -> Result<Option<Arc<Lesson>>, RunError> {
         let Some(own) = &self.lesson else { return Ok(None) };
         let lesson = Lesson::of_run(folder, &own.name)?;
@@ -174,17 +172,17 @@ impl Class {
         Err(RunError::Damaged {
             path: folder.join("lesson.toml"),
             line: 1,
-            problem: format!("the lesson is not the one that was handed out, {}", own.name),
+            problem: format!("the lesson differs from the one that was handed out, {}", own.name),
             safe: "Nothing was changed; restore lesson.toml and lesson.md from a copy".to_owned(),
         })
     }
 
-    /// A student by their label.
+    /// Returns the student with a label.
     pub fn student(&self, label: &str) -> Option<&ClassStudent> {
         self.students.iter().find(|student| student.label == label)
     }
 
-    /// Labels whose hand-outs in the folder are not those that were handed out; those that are gone are not among them.
+    /// Returns the labels of handouts in the folder that differ from those that were handed out. Missing files are not listed.
     pub(super) fn altered_handouts(&self, folder: &Path) -> Vec<String> {
         let is_altered = |student: &&ClassStudent| {
             let path = folder.join(format!("{}{ENDING}", student.label));

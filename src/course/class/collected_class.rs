@@ -1,4 +1,4 @@
-//! A class with what was collected of it last, read from its folder.
+//! A class with its newest collection, read from its folder.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -8,22 +8,22 @@ use super::collecting::ClassCollection;
 use novamind_record::error::RunError;
 use novamind_record::lesson::Lesson;
 
-/// A class with what was collected of it last.
+/// A class with its newest collection.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CollectedClass {
-    /// What was handed out, and to whom.
+    /// The class.
     pub class: Class,
-    /// The lesson, if that was handed out.
+    /// The lesson, if a lesson was handed out.
     pub lesson: Option<Arc<Lesson>>,
-    /// What came back.
+    /// The newest collection.
     pub collection: ClassCollection,
 }
 
 impl CollectedClass {
-    /// Reads what a folder holds.
+    /// Reads class, lesson and collection from a folder.
     ///
     /// # Errors
-    /// It holds no class, nothing was collected yet, or a file of it is damaged.
+    /// Returns an error if the folder contains no class or no collection, or if a file is damaged.
     pub fn read(folder: &Path) -> Result<CollectedClass, RunError> {
         let class = Class::read(folder)?;
         let lesson = class.lesson_kept(folder)?;

@@ -1,4 +1,4 @@
-//! What came back of a class: found in folders and archives of any number of machines, simulated again, and told apart.
+//! Collection of a class: finds its runs in folders and archives, re-simulates them, and assigns them to students.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -19,39 +19,39 @@ use novamind_record::lesson::Lesson;
 use novamind_session::{AnswersCompanies, Workshop};
 use novamind_study::{CollectNote, FoundRun, gather};
 
-/// Name of the file in the folder of the class.
 const COLLECTED_FILE: &str = "collected.json";
 
-/// What came back of a class.
+/// The submissions of a class.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ClassCollection {
-    /// Runs, by label and the moment they were begun.
+    /// Runs, sorted by label and start time.
     pub runs: Vec<ClassRun>,
-    /// The good play on the seeds that were played.
+    /// The reference play on the seeds of the runs.
     pub references: Vec<ClassReference>,
-    /// What should be known.
+    /// Problems for the instructor.
     pub findings: Vec<ClassFinding>,
-    /// How many records were found once more, or in an earlier state: the latest counts.
+    /// Number of records that were found again, or in an earlier state; the latest one counts.
     pub superseded: u32,
-    /// How many runs belong to something else.
+    /// Number of runs that do not belong to the class.
     pub others: u32,
 }
 
-/// What is collected.
+/// The input of a collection.
 pub struct ClassSources<'a> {
     /// The class.
     pub class: &'a Class,
-    /// Its folder.
+    /// Folder of the class.
     pub folder: &'a Path,
-    /// Folders of runs and archives; they are searched with all that lies below.
+    /// Folders of runs and archives, searched recursively.
     pub places: &'a [PathBuf],
 }
 
 impl ClassCollection {
-    /// Collects what came back, and keeps it in the folder of the class; `progress` is told how many runs of how many are done.
+    /// Collects the submissions and stores them in the folder of the class. `progress` is called with the number of processed runs
+    /// and the number of all runs.
     ///
     /// # Errors
-    /// The folder cannot be read or written, or the good play of the lesson cannot be played.
+    /// Returns an error if the folder cannot be read or written, or if the reference play of the lesson cannot be played.
     pub fn collect(
         sources: &ClassSources<'_>,
         answers: AnswersCompanies,
@@ -61,7 +61,7 @@ impl ClassCollection {
         let workshop = Workshop::within(sources.folder)?;
         let mut gathered = gather(sources.places, workshop.path(), workshop.path(), None);
         for found in gathered.runs.iter_mut().chain(gathered.conflicts.values_mut().flatten()) {
-            // What `run.toml` says otherwise than the first line does not count.
+            // The first event takes precedence over `run.toml`, which could have been edited.
             if let Ok(derived) = Derived::of(&found.folder) {
                 found.manifest = derived.manifest;
             }
@@ -99,22 +99,22 @@ impl ClassCollection {
             None => Vec::new(),
         };
         let collection = ClassCollection { runs, references, findings, superseded, others };
-        let text = serde_json::to_string(&collection).expect("a collection holds plain values");
+        let text = serde_json::to_string(&collection).expect("a collection contains plain values");
         write_whole(&sources.folder.join(COLLECTED_FILE), text.as_bytes())?;
         Ok(collection)
     }
 
-    /// Reads what was collected last.
+    /// Reads the newest collection.
     ///
     /// # Errors
-    /// Nothing was collected yet, or the file is damaged.
+    /// Returns an error if nothing was collected yet, or if the file is damaged.
     pub fn read(folder: &Path) -> Result<ClassCollection, RunError> {
         let path = folder.join(COLLECTED_FILE);
-        let collect = format!("`novamind class collect {} PLACES` makes it", folder.display());
+        let collect = format!("`novamind class collect {} PLACES`", folder.display());
         let text = match std::fs::read_to_string(&path) {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 return Err(RunError::NotPossible(format!(
-                    "nothing was collected in {} yet: {collect}",
+                    "nothing was collected in {} yet. Collect first: {collect}",
                     folder.display()
                 )));
             }
@@ -123,13 +123,12 @@ impl ClassCollection {
         serde_json::from_str(&text).map_err(|error| RunError::Damaged {
             line: error.line(),
             problem: error.to_string(),
-            safe: format!("Hand-outs and runs were not touched; {collect} anew"),
+            safe: format!("Handouts and runs were not changed; collect again: {collect}"),
             path,
         })
     }
 }
 
-/// What was found so far.
 struct Returned<'a> {
     sources: &'a ClassSources<'a>,
     lesson: Option<&'a Arc<Lesson>>,
@@ -139,7 +138,7 @@ struct Returned<'a> {
 }
 
 impl Returned<'_> {
-    /// The student whom a path names: a folder with their label, or a file whose name begins with it.
+    /// Returns the label of the student whom a path names: by a folder, or by the beginning of the file name.
     fn label_of_place(&self, path: &Path) -> Option<String> {
         let begins = |part: &str, label: &str| {
             part.strip_prefix(label)
@@ -154,7 +153,7 @@ impl Returned<'_> {
         found.manifest.participant.clone().or_else(|| self.label_of_place(&found.source))
     }
 
-    /// Whether a record has to do with the class: it began with one of its hand-outs, or is one of its lesson.
+    /// Whether a record started from a handout of the class, or without a handout from its lesson.
     fn concerns(&self, manifest: &Manifest) -> bool {
         let class = self.sources.class;
         let own = manifest.handout.as_ref().is_some_and(|stamp| stamp.class == class.class);
@@ -171,7 +170,7 @@ impl Returned<'_> {
         self.runs.push(run);
     }
 
-    /// Records of one run that contradict each other: whole ones count for nobody, and each is told.
+    /// Adds records of one run that contradict each other. If several of them are valid, none counts, and each is reported.
     fn take_several(&mut self, records: &[FoundRun]) {
         let own: Vec<&FoundRun> = records.iter().filter(|found| self.concerns(&found.manifest)).collect();
         let Some(first) = own.first() else {
@@ -192,7 +191,7 @@ impl Returned<'_> {
         self.runs.extend(wrong);
     }
 
-    /// A record with what it shows, and whether it counts.
+    /// Examines a record and decides whether it counts.
     fn judged(&mut self, found: &FoundRun) -> ClassRun {
         let label = self.label_of(found).unwrap_or_default();
         let examined = examine(&found.folder, self.lesson);
@@ -223,7 +222,7 @@ impl Returned<'_> {
         }
     }
 
-    /// Why a whole record does not count: it is not what was handed out to this student.
+    /// Returns the reason why a valid record does not count: it does not match the handout of this student.
     fn foreign(&self, found: &FoundRun, label: &str) -> Option<(RunVerdict, ClassFinding)> {
         let (class, manifest) = (self.sources.class, &found.manifest);
         let (label, run) = (label.to_owned(), manifest.id.clone());
@@ -251,7 +250,7 @@ impl Returned<'_> {
         None
     }
 
-    /// Whether a run with a past has the one that was handed out; where the hand-out is gone from the folder nobody can say.
+    /// Whether a run continues the past that was handed out. Returns `true` if the handout is no longer in the folder.
     fn begins_as_handed_out(&self, student: &ClassStudent, found: &FoundRun) -> bool {
         let path = self.sources.folder.join(format!("{}{ENDING}", student.label));
         let Ok(Handout { content: HandedOut::Run(past), .. }) = Handout::read(&path) else { return true };
@@ -290,7 +289,7 @@ impl ClassRun {
     }
 }
 
-/// An error of a copy, told of where the record was found.
+/// Describes an error with the path where the record was found, not that of its copy.
 fn problem_of(error: &RunError, found: &FoundRun) -> String {
     match error {
         RunError::Damaged { line, problem, .. } => {

@@ -1,4 +1,4 @@
-//! What a run of a class shows: simulated again from its lines, and what they say of the lesson held against that.
+//! Evidence of a run of a class: re-simulates the run and compares its lesson events with the result.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -13,68 +13,70 @@ use novamind_record::trajectory::record::{Activity, LessonEvent, LessonNote};
 use novamind_record::trajectory::{Line, Record};
 use novamind_session::{Integrity, SealKey, Session, measure, read_recorded, setting_values};
 
-/// What a run of a class shows.
+/// The results of a run of a class.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Evidence {
     /// The part of the lesson, counted from 1.
     pub part: u32,
-    /// Seed.
+    /// Seed of the run.
     pub seed: u64,
     /// Last day.
     pub day: u32,
-    /// Whether it is over.
+    /// Whether the run has ended.
     pub is_over: bool,
-    /// Which try it is: the highest of its steps.
+    /// Number of tries: the maximum over its steps.
     pub tries: u32,
-    /// How many hints were asked for.
+    /// Number of hints taken.
     pub hints: u32,
     /// The steps of the part.
     pub steps: Vec<StepEvidence>,
-    /// Names of the pitfalls that were met, in their order.
+    /// Names of the pitfalls, in the order in which they were met.
     pub pitfalls: Vec<String>,
-    /// Day and cash after each week, from day 0 on, dollars.
+    /// Day and cash in dollars, on day 0 and after each week.
     pub cash: Vec<(u32, f64)>,
-    /// Mean of every number that was set, over the weeks in which the student decided.
+    /// Mean of every setting over the weeks in which the student decided.
     pub decisions: BTreeMap<String, f64>,
     /// Figures of the last week.
     pub figures: BTreeMap<String, f64>,
 }
 
-/// What a step came to.
+/// The results of a step.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepEvidence {
-    /// What was guessed; of choices the number of the one taken, counted from 1.
+    /// The guess; for choices the number of the selected one, counted from 1.
     pub guess: Option<f64>,
-    /// What came of it.
+    /// The outcome.
     pub outcome: Option<f64>,
-    /// Its goals; empty before it is over.
+    /// The goals; empty until the step has ended.
     pub goals: Vec<GoalEvidence>,
 }
 
-/// What a goal came to.
+/// The result of a goal.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct GoalEvidence {
-    /// What was measured.
+    /// Measured value.
     pub value: Option<f64>,
     /// Whether it was reached.
     pub met: bool,
 }
 
-/// Simulates a run again, compares every recorded state, and measures the goals and outcomes that its lines name.
+/// Re-simulates a run, compares every recorded state, and measures the goals and outcomes of its lesson events.
 ///
 /// # Errors
-/// The first line that does not fit; or the run is missing or of another version.
+/// Returns the first event that does not match, or an error if the run is missing or has another version.
 pub(super) fn examine(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Result<Evidence, RunError> {
     let (origin, trajectory) = read_recorded(folder)?;
     let manifest = &origin.manifest;
     Integrity::of(folder, manifest, &SealKey::default()).check(&origin.path, &trajectory)?;
     let stamp = manifest.lesson.as_ref();
-    // By another lesson nothing of this one can be measured.
+    // This lesson's goals cannot be measured in a run of another lesson.
     let lesson = lesson.filter(|lesson| stamp.is_some_and(|stamp| stamp.digest == lesson.digest));
     let part = stamp.map_or(0, |stamp| (stamp.part as usize).wrapping_sub(1));
     if let Some(lesson) = lesson.filter(|lesson| part >= lesson.plan.parts.len()) {
-        let message =
-            format!("its first line names no part of the lesson, which has {}", lesson.plan.parts.len());
+        let message = format!(
+            "its first event names a part that the lesson does not have; it has {}",
+            lesson.plan.parts.len()
+        );
         return Err(RunError::NotPossible(message));
     }
     let standing = lesson.map(|lesson| LessonStanding::of(lesson.clone(), part, &trajectory.lines));
@@ -85,7 +87,7 @@ pub(super) fn examine(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Result<Evi
     Ok(Evidence { is_over: trajectory.end().is_some(), ..replay.evidence(&session, manifest.seed) })
 }
 
-/// A run that is simulated again, and what was seen of it.
+/// State of a re-simulation.
 struct Replay {
     standing: Option<LessonStanding>,
     decisions: BTreeMap<String, f64>,
@@ -110,12 +112,12 @@ impl Replay {
                 path: path.to_owned(),
                 line: line.seq as usize + 1,
                 problem,
-                safe: "The files were not touched; ask for the run again".to_owned(),
+                safe: "The files were not changed; ask for the run again".to_owned(),
             }),
         }
     }
 
-    /// In what a note about a goal, or about what was to be guessed, differs from the company simulated again.
+    /// Describes how the recorded result of a goal or a guess differs from the re-simulation. Returns `None` if they match.
     fn differs(&self, session: &mut Session, note: &LessonNote) -> Option<String> {
         let standing = self.standing.clone()?;
         let step = (note.step as usize).checked_sub(1)?;
@@ -135,7 +137,7 @@ impl Replay {
         let shown = |value: Option<f64>| value.map_or("nothing".to_owned(), |value| value.to_string());
         (!is_same).then(|| {
             format!(
-                "the line says {} for step {}, and the company simulated again has {}",
+                "the event has {} for step {}, but the re-simulation has {}",
                 shown(note.value),
                 note.step,
                 shown(measured)
@@ -146,13 +148,13 @@ impl Replay {
     fn evidence(self, session: &Session, seed: u64) -> Evidence {
         let Replay { standing, decisions, weeks } = self;
         let means = decisions.into_iter().map(|(name, sum)| (name, sum / f64::from(weeks.max(1))));
-        // A quota without a limit is no number.
+        // An unlimited quota is infinite.
         let decisions = means.filter(|(_, mean)| mean.is_finite()).collect();
         Evidence { decisions, ..evidence_of(session, standing.as_ref(), seed) }
     }
 }
 
-/// What a session that was played, or simulated again, shows.
+/// Returns the results of a session that was played or re-simulated.
 pub(super) fn evidence_of(session: &Session, standing: Option<&LessonStanding>, seed: u64) -> Evidence {
     let steps = standing.map_or(0, |own| own.own_part().steps.len());
     let numbers: BTreeSet<usize> = (0..steps).collect();
@@ -194,20 +196,20 @@ fn figures_of(session: &Session) -> BTreeMap<String, f64> {
     all.filter(|(_, value)| value.is_finite()).collect()
 }
 
-/// A run that came back, and what is to be thought of it.
+/// A submitted run with its verdict.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ClassRun {
-    /// Label in its first line; else that of the class which its place names; else empty.
+    /// Label in its first event, otherwise the label that its path names, otherwise empty.
     pub label: String,
-    /// Name.
+    /// Name of the run.
     pub run: String,
-    /// When it was begun, RFC 3339.
+    /// Start time, RFC 3339.
     pub created: String,
-    /// Where it was found.
+    /// Path where the run was found.
     pub source: PathBuf,
-    /// Whether it counts.
+    /// Whether the run counts.
     pub verdict: RunVerdict,
-    /// What it shows; nothing where it was altered.
+    /// The results; empty except for part and seed if the run was altered.
     pub evidence: Evidence,
 }
 
@@ -215,24 +217,24 @@ pub struct ClassRun {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RunVerdict {
-    /// It is over, and what its lines say is what the simulation says.
+    /// The run has ended and matches the re-simulation.
     Finished,
-    /// It is whole and goes on.
+    /// The run is valid and has not ended.
     NotFinished,
-    /// Its lines are not what the simulation makes of them.
+    /// The events do not match the re-simulation.
     Altered,
-    /// Two records of it contradict each other.
+    /// Several valid records of the run contradict each other.
     Twice,
-    /// It was played by another lesson, or another version of it.
+    /// The run used another lesson, or another version of it.
     OtherLesson,
-    /// It began with the hand-out of somebody else, or with another past than was handed out.
+    /// The run started from another student's handout, or from a past that was not handed out.
     OtherHandout,
-    /// It did not begin with a hand-out of this class.
+    /// The run did not start from a handout of this class.
     Unknown,
 }
 
 impl RunVerdict {
-    /// Its word in tables.
+    /// Returns the name that tables use.
     pub fn id(self) -> &'static str {
         match self {
             RunVerdict::Finished => "finished",

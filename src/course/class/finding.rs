@@ -1,29 +1,29 @@
-//! What an instructor should know of what came back.
+//! Problems of a collection that the instructor should know.
 
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-/// Something that an instructor should know of what came back.
+/// A problem of a collection.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum ClassFinding {
-    /// A file that cannot be read: damaged, altered, or no run.
+    /// A file that cannot be read: damaged, altered, or not a run.
     Unreadable {
-        /// The student whom its place names, if it names one.
+        /// Label that the path names, if any.
         label: Option<String>,
-        /// Where it lies.
+        /// Path.
         path: PathBuf,
-        /// Why.
+        /// Reason.
         problem: String,
     },
-    /// A run whose lines are not what the simulation makes of them.
+    /// A run whose events do not match the re-simulation.
     Altered {
         /// Label.
         label: String,
         /// Run.
         run: String,
-        /// The first line that does not fit.
+        /// The first event that does not match.
         problem: String,
     },
     /// Records of one run that contradict each other.
@@ -32,35 +32,35 @@ pub enum ClassFinding {
         label: String,
         /// Run.
         run: String,
-        /// Where they lie.
+        /// Their paths.
         paths: Vec<PathBuf>,
     },
-    /// A run that was played by another lesson, or another version of it.
+    /// A run of another lesson, or of another version of it.
     OtherLesson {
         /// Label.
         label: String,
         /// Run.
         run: String,
     },
-    /// A run that began with another hand-out than this student's.
+    /// A run that did not start from this student's handout.
     OtherHandout {
         /// Label.
         label: String,
         /// Run.
         run: String,
-        /// Whose hand-out it was; none where only its past differs.
+        /// Label of the handout's student; `None` if only the past differs.
         of: Option<String>,
     },
-    /// A run of the lesson that did not begin with a hand-out of this class.
+    /// A run of the lesson that did not start from a handout of this class.
     Unknown {
-        /// Label in its first line.
+        /// Label in its first event.
         label: Option<String>,
         /// Run.
         run: String,
-        /// Where it lies.
+        /// Path.
         path: PathBuf,
     },
-    /// A student of whom nothing came back.
+    /// A student without a submission.
     Missing {
         /// Label.
         label: String,
@@ -72,7 +72,7 @@ pub enum ClassFinding {
         /// The parts, counted from 1.
         parts: Vec<u32>,
     },
-    /// A hand-out in the folder of the class that is not the one that was handed out.
+    /// A handout in the folder of the class that was changed.
     AlteredHandout {
         /// Label.
         label: String,
@@ -80,7 +80,7 @@ pub enum ClassFinding {
 }
 
 impl ClassFinding {
-    /// The student it is about.
+    /// Returns the label of the student, if known.
     pub fn label(&self) -> Option<&str> {
         match self {
             ClassFinding::Unreadable { label, .. } | ClassFinding::Unknown { label, .. } => label.as_deref(),

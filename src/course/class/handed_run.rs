@@ -1,4 +1,4 @@
-//! A run of an instructor as every student is to begin with it: a branch of its last week, under a label and a name of its own.
+//! A run that is handed out: every student gets a branch after its last week, with a separate label and name.
 
 use std::path::Path;
 
@@ -18,16 +18,15 @@ use novamind_session::{Workshop, verify, write_past};
 pub(super) struct HandedPast {
     manifest: Manifest,
     lines: Vec<Line>,
-    /// Its last day.
     pub(super) day: u32,
 }
 
 impl HandedPast {
-    /// Reads a run, and simulates it again.
+    /// Reads and verifies a run.
     ///
     /// # Errors
-    /// It is damaged, an unfinished baseline run, a run of a study or a lesson, is over and cannot be played on, or has a
-    /// language model as judge.
+    /// Returns an error if the run is damaged, is an unfinished baseline run, belongs to a study or a lesson, has no day left,
+    /// or has a language model as judge.
     pub(super) fn of(folder: &Path) -> Result<HandedPast, RunError> {
         let manifest = Derived::of(folder)?.manifest;
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
@@ -35,36 +34,35 @@ impl HandedPast {
             Err(RunError::NotPossible(format!("run {} cannot be handed out: {why}", manifest.id)))
         };
         if manifest.lesson.is_some() {
-            return refused("it belongs to a lesson; hand out the lesson itself");
+            return refused("it belongs to a lesson. Hand out the lesson itself");
         }
         if manifest.study.is_some() || (manifest.mode == Mode::Baseline && trajectory.end().is_none()) {
             return refused(
-                "an unfinished baseline run, or one of a study, has no branches; end it first, or take another run",
+                "an unfinished baseline run and a run of a study cannot be branched. End the run first, or choose another one",
             );
         }
         if manifest.voice.as_ref().is_some_and(|model| model.judge) {
             return refused(
-                "a language model judged posts in it, and what it would say of those of students nobody can check",
+                "a language model judged its posts, and its scores for the posts of students could not be verified",
             );
         }
         let day = verify(folder)?.day;
         if day >= manifest.days {
-            return refused("no day is left in it; branch it at an earlier week and hand out the branch");
+            return refused("it has no day left. Branch it at an earlier week and hand out the branch");
         }
         let closing = trajectory.lines.iter().rposition(Line::closes_days).map_or(1, |at| at + 1);
         let lines = trajectory.lines.into_iter().take(closing).collect();
         Ok(HandedPast { manifest, lines, day })
     }
 
-    /// Name of the run.
     pub(super) fn run(&self) -> &str {
         &self.manifest.id
     }
 
-    /// The files of a branch of it.
+    /// Returns the files of a branch for one student. Uses a temporary folder in `beside`.
     ///
     /// # Errors
-    /// `beside` cannot be written.
+    /// Returns an error if `beside` cannot be written.
     pub(super) fn handed_to(
         &self,
         label: &str,
@@ -82,7 +80,7 @@ impl HandedPast {
             participant: Some(label.to_owned()),
             handout: Some(stamp.clone()),
             rules: Some(SessionRules::of_mode(mode)),
-            // What the instructor played and agreed to says nothing of the student.
+            // The instructor's earlier runs and consent do not apply to the student.
             earlier: Vec::new(),
             earlier_runs: 0,
             consent: None,

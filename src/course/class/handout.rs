@@ -1,4 +1,4 @@
-//! A hand-out: one file a student, with what they play (docs/formats/class.md#handout).
+//! Handouts: the file from which one student starts (docs/formats/class.md#hand-out).
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -17,29 +17,27 @@ use novamind_record::stamp::{HandoutEntry, HandoutStamp};
 use novamind_session::{LessonEntry, NewRun, Session, Storage, is_run_name};
 use novamind_world::params::ParameterSource;
 
-/// Format of hand-outs that this program writes.
 pub(super) const HANDOUT_FORMAT: u32 = 1;
 
-/// Ending of the names of hand-outs.
 pub(super) const ENDING: &str = ".nm";
 
-/// The file of a student.
+/// The file from which one student starts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Handout {
-    /// Who plays.
+    /// Label of the student.
     pub label: String,
-    /// The class, and the run that it begins.
+    /// The class, and the run that the handout creates.
     pub stamp: HandoutStamp,
-    /// What is played.
+    /// The lesson or run.
     pub content: HandedOut,
 }
 
-/// What is played.
+/// The content of a handout.
 #[derive(Debug, Clone, PartialEq)]
 pub enum HandedOut {
-    /// A lesson, from its first part on.
+    /// A lesson, starting with its first part.
     Lesson(Arc<Lesson>),
-    /// A run with a past, as its files are to be.
+    /// The files of a run with a past.
     Run(HandedRun),
 }
 
@@ -53,7 +51,6 @@ pub struct HandedRun {
     pub trajectory: String,
 }
 
-/// A hand-out as its file holds it.
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct HandoutFile {
@@ -78,7 +75,7 @@ struct HandedLesson {
 
 impl HandoutFile {
     fn text(&self) -> String {
-        toml::to_string(self).expect("a hand-out holds plain values")
+        toml::to_string(self).expect("a handout contains plain values")
     }
 
     fn sealed(self) -> HandoutFile {
@@ -88,30 +85,30 @@ impl HandoutFile {
 }
 
 impl Handout {
-    /// Reads the file of a student.
+    /// Reads a handout.
     ///
     /// # Errors
-    /// It cannot be read, was altered after it was handed out, or is of a later format.
+    /// Returns an error if the file cannot be read, was altered after it was handed out, or has a later format.
     pub fn read(path: &Path) -> Result<Handout, RunError> {
         let refused = |problem: &str| {
             RunError::NotPossible(format!(
-                "{}: {problem}. No run was begun or changed; ask for the hand-out again, or copy it again without opening it \
+                "{}: {problem}. No run was created or changed. Ask for the handout again, or copy it again without opening it \
                  in an editor",
                 path.display()
             ))
         };
         let bytes = std::fs::read(path).map_err(RunError::io(path))?;
-        let text = String::from_utf8(bytes).map_err(|_| refused("this is no hand-out of a class"))?;
+        let text = String::from_utf8(bytes).map_err(|_| refused("this is not a handout of a class"))?;
         let format = text.parse::<toml::Table>().ok().and_then(|table| table.get("format")?.as_integer());
         if let Some(format) = format.filter(|format| *format > i64::from(HANDOUT_FORMAT)) {
             return Err(refused(&format!(
-                "it is a hand-out of format {format}, and this program reads format {HANDOUT_FORMAT}: a later version reads it"
+                "the handout has format {format}, but this program reads format {HANDOUT_FORMAT}. Use a later version"
             )));
         }
-        let altered = "this hand-out was altered, or it is cut short: its seal does not fit its bytes";
+        let altered = "this handout was altered or truncated: its seal does not match its content";
         let file: HandoutFile = toml::from_str(&text).map_err(|_| match text.starts_with("format = ") {
             true => refused(altered),
-            false => refused("this is no hand-out of a class"),
+            false => refused("this is not a handout of a class"),
         })?;
         if file.clone().sealed().text() != text {
             return Err(refused(altered));
@@ -120,7 +117,7 @@ impl Handout {
             || !is_run_name(&file.class)
             || participant_folder(Path::new(""), &file.label).is_err()
         {
-            return Err(refused("its label, or the name of its run, is none"));
+            return Err(refused("its label, its class or the name of its run is invalid"));
         }
         let stamp = HandoutStamp { class: file.class, run: file.run };
         let content = match (file.lesson, file.past) {
@@ -129,15 +126,15 @@ impl Handout {
                 HandedOut::Lesson(Arc::new(Lesson::of_texts(&own.name, source, own.texts)?))
             }
             (None, Some(past)) => HandedOut::Run(past),
-            _ => return Err(refused("it holds neither a lesson nor a run")),
+            _ => return Err(refused("it must contain either a lesson or a run")),
         };
         Ok(Handout { label: file.label, stamp, content })
     }
 
-    /// Writes the file of the student into a folder; tells its seal.
+    /// Writes the file into a folder and returns its seal.
     ///
     /// # Errors
-    /// The folder cannot be written.
+    /// Returns an error if the folder cannot be written.
     pub(super) fn write(&self, folder: &Path) -> Result<String, RunError> {
         let (lesson, past) = match &self.content {
             HandedOut::Lesson(lesson) => {
@@ -162,27 +159,27 @@ impl Handout {
         Ok(file.seal)
     }
 
-    /// The seal of a file, if it is a hand-out and whole.
+    /// Returns the seal of a file, or `None` if the file is not a valid handout.
     pub(super) fn seal_of(path: &Path) -> Option<String> {
         Handout::read(path).ok()?;
         toml::from_str::<HandoutFile>(&std::fs::read_to_string(path).ok()?).ok().map(|file| file.seal)
     }
 
-    /// Makes sure that the run of this hand-out is there, below the folder of all runs; tells the name of the run that the
-    /// student goes on with: the one that was played last and is not over, else the one that was played last.
+    /// Creates the run of this handout below the folder of all runs, unless it exists. Returns the name of the run to continue:
+    /// the newest unfinished run of the handout, otherwise its newest run.
     ///
     /// # Errors
-    /// A run of this name is there that did not begin with this hand-out; the run cannot be begun.
+    /// Returns an error if a run of this name exists that did not start from this handout, or if the run cannot be created.
     pub fn place(&self, base: &Path) -> Result<String, RunError> {
         let runs = participant_folder(base, &self.label).map_err(RunError::NotPossible)?;
         if let Some(run) = self.newest(&runs)? {
             return Ok(run);
         }
         let folder = runs.join(&self.stamp.run);
-        // A program that ended before the first line has left nothing that counts.
+        // A program that ended before the first event leaves a folder without these files, which can be reused.
         if ["run.toml", "trajectory.jsonl"].iter().any(|file| folder.join(file).exists()) {
             return Err(RunError::Exists(format!(
-                "{} is there, and is no run of this hand-out. Nothing was changed; move that folder away, and open the hand-out \
+                "{} exists but does not belong to this handout. Nothing was changed. Move the folder away and open the handout \
                  again",
                 folder.display()
             )));
@@ -222,9 +219,9 @@ impl Handout {
             .and_then(|()| Manifest::read(folder))
             .and_then(|manifest| match manifest.handout.as_ref() == Some(&self.stamp) {
                 true => Ok(()),
-                false => Err(RunError::NotPossible(
-                    "the run of the hand-out belongs to another hand-out".to_owned(),
-                )),
+                false => {
+                    Err(RunError::NotPossible("the run of the handout belongs to another handout".to_owned()))
+                }
             });
         if written.is_err() {
             let _ = std::fs::remove_dir_all(folder);

@@ -1,8 +1,8 @@
-//! Classes: what an instructor hands out, what students begin with it, and what comes back (docs/lessons/classes.md).
+//! Classes: handouts of an instructor, and the submissions of students (docs/lessons/classes.md).
 //!
-//! Every student has a hand-out of their own: the lesson, or the past of a run, with a label and the name of the run that it
-//! begins. Runs that began with it carry the stamp of the class, so that what comes back from any number of machines is
-//! told apart.
+//! Every student has a separate handout: the lesson, or the past of a run, with a label and the name of the run that it
+//! creates. Runs that started from a handout carry the stamp of the class, so submissions from any number of machines can be
+//! assigned to students.
 
 pub(crate) mod class_file;
 pub(crate) mod collected_class;

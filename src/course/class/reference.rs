@@ -1,4 +1,4 @@
-//! The good play of the lesson of a class, on the seeds that were played.
+//! The reference play of a class's lesson, on the seeds of the submitted runs.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -10,17 +10,17 @@ use novamind_record::error::RunError;
 use novamind_record::lesson::{GoalBound, Lesson, LessonPart};
 use novamind_session::{AnswersCompanies, PartPlay, play_part};
 
-/// The good play of a part on a seed.
+/// The reference play of a part on a seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ClassReference {
-    /// What it came to; it names part and seed.
+    /// Its results, including part and seed.
     pub evidence: Evidence,
 }
 
-/// Plays the good play for every part and seed of some runs.
+/// Plays the reference play for every part and seed of the valid runs.
 ///
 /// # Errors
-/// A part cannot begin, or a call is refused.
+/// Returns an error if a part cannot start or a call is rejected.
 pub(super) fn references(
     lesson: &Arc<Lesson>,
     runs: &[ClassRun],
@@ -51,14 +51,14 @@ fn reference(
     Ok(ClassReference { evidence: evidence_of(&session, session.lesson(), seed) })
 }
 
-/// The goal that a part is ranked by: the last goal of its last step that has one; steps and goals are counted from 0.
+/// Returns step and goal by which a part is ranked: the last goal of the last step with goals. Both are counted from 0.
 pub fn ranked_goal(part: &LessonPart) -> Option<(usize, usize)> {
     let step = part.steps.iter().rposition(|step| !step.goals.is_empty())?;
     Some((step, part.steps[step].goals.len() - 1))
 }
 
-/// A value as a share of what the good play has: more is better. Where the least is wanted it is the other way round; none
-/// where the good play has nothing above 0.
+/// Returns a value as a share of the reference play's value; higher is better. The ratio is inverted if the bound is a maximum.
+/// Returns `None` if the denominator or the reference value is not positive.
 pub fn share_of_good(bound: Option<GoalBound>, value: f64, good: f64) -> Option<f64> {
     let (of, all) = if matches!(bound, Some(GoalBound::AtMost(_))) { (good, value) } else { (value, good) };
     (all > 0.0 && good > 0.0).then(|| of / all)

@@ -1,7 +1,7 @@
-//! The debrief of a part of a lesson: what was played beside the reference plays, and the decision that parted them.
+//! The debrief of a part of a lesson: compares the student's play with the reference play and the bad play.
 //!
-//! All plays begin as the part does and go through the same doors, in memory. What was played is played once more, too: a
-//! difference is told only where that comes to the recorded cash of every day.
+//! All plays start like the part and use the same interfaces, in memory. The student's play is re-simulated, too: decisions are
+//! compared only if it reproduces the recorded cash of every day.
 
 use serde::{Serialize, Serializer};
 
@@ -21,7 +21,7 @@ use novamind_session::{
 use novamind_tools::{Refusal, ToolId, highest_named};
 use novamind_world::params::Params;
 
-/// A part of a lesson that was played: what its debrief is found from.
+/// A finished part of a lesson, from which the debrief is computed.
 #[derive(Debug, Clone)]
 pub struct PlayedPart {
     standing: LessonStanding,
@@ -35,111 +35,111 @@ pub struct PlayedPart {
     own: Vec<ScheduledCalls>,
 }
 
-/// What a part came to, beside the reference plays on the same seed.
+/// The results of a part, with the reference play and the bad play on the same seed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Debrief {
     /// Title of the lesson.
     pub title: String,
-    /// What the student can do, or knows, now.
+    /// Learning goal of the lesson.
     pub learning_goal: String,
-    /// Title of the part, where there are several.
+    /// Title of the part, if the lesson has several parts.
     pub part: Option<String>,
-    /// The run.
+    /// Name of the run.
     pub run: String,
-    /// Who played, where that is known.
+    /// Label of the student, if known.
     pub participant: Option<String>,
     /// Seed of the run.
     pub seed: u64,
     /// How the run ended.
     pub ended: Option<Ended>,
-    /// First day of which the student decided.
+    /// First day on which the student decided.
     pub first_day: u32,
-    /// Cash at the end of each day, day 0 first, dollars.
+    /// Cash at the end of each day in dollars, from day 0.
     pub own: Vec<f64>,
-    /// The same of the good play; none where it cannot be played.
+    /// The reference play; `None` if it cannot be played.
     pub good: Option<ReferenceCurve>,
-    /// The same of the bad play.
+    /// The bad play; `None` if it cannot be played.
     pub bad: Option<ReferenceCurve>,
-    /// The figure that the part is judged by, where that is not cash.
+    /// The figure by which the part is judged, if it is not cash.
     pub judged_by: Option<JudgedFigure>,
-    /// Where the own decisions parted from those of the good play.
+    /// First difference between the student's decisions and the reference play.
     pub comparison: DecisionComparison,
-    /// What was asked and what was to be reached, by step.
+    /// Questions and goals by step.
     pub steps: Vec<DebriefStep>,
-    /// What was said of the pitfalls that were met, with the day.
+    /// Day and text of each pitfall that was met.
     pub pitfalls: Vec<(u32, String)>,
-    /// The mechanism, in the words of the lesson, in Markdown; none while a part of the lesson is to come.
+    /// Explanation of the mechanism in Markdown; `None` while a part of the lesson is still to come.
     pub text: Option<String>,
 }
 
 impl Debrief {
-    /// The names of its companies: no lesson gives them others than those of its seed.
+    /// Returns the names of enterprises, which depend only on the seed.
     pub fn company_names(&self) -> CompanyNames {
         CompanyNames::new(self.seed, &Params::shipped().personas.email)
     }
 }
 
-/// A reference play.
+/// The cash curve of the reference play or the bad play.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ReferenceCurve {
-    /// What it does, in words; none while a part of the lesson is to come, which they would give away.
+    /// Description of the play; `None` while a part of the lesson is still to come, because it would reveal the solution.
     pub text: Option<String>,
-    /// Cash at the end of each day, day 0 first, dollars.
+    /// Cash at the end of each day in dollars, from day 0.
     pub cash_by_day: Vec<f64>,
 }
 
-/// A figure of weeks that a part is judged by, as the first goal of its last step says; by day, at the end of each week.
+/// The weekly figure by which a part is judged, from the first goal of its last step. Values are by day, at the end of each week.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JudgedFigure {
     /// The figure.
     pub figure: WeekFigure,
-    /// What was played.
+    /// The student's play.
     pub own: Vec<(u32, f64)>,
-    /// The good play; none where it cannot be played.
+    /// The reference play; `None` if it cannot be played.
     pub good: Option<Vec<(u32, f64)>>,
-    /// The bad play.
+    /// The bad play; `None` if it cannot be played.
     pub bad: Option<Vec<(u32, f64)>>,
 }
 
-/// The own decisions beside those of the good play.
+/// The comparison of the student's decisions with the reference play.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DecisionComparison {
-    /// They part.
+    /// The decisions differ.
     Parted(FirstDifference),
-    /// They are the same all the way.
+    /// The decisions are the same in every week.
     Same,
-    /// There is nothing to be decided in this part.
+    /// The part requires no decision.
     Nothing,
-    /// That cannot be told: one of the two cannot be played again, or comes to something else then.
+    /// One of the plays cannot be re-simulated, or the student's play has a different result.
     Unknown,
 }
 
-/// The first week in which other decisions held than in the good play.
+/// The first week in which the decisions differ from the reference play.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FirstDifference {
-    /// The week of the company, counted from 1.
+    /// Week of the company, counted from 1.
     pub week: u32,
-    /// The day on which it begins.
+    /// First day of the week.
     pub day: u32,
-    /// What was decided otherwise.
+    /// The decisions that differ.
     pub decisions: Vec<PartedDecision>,
-    /// What these decisions of the good play would have come to.
+    /// Effect of these decisions of the reference play in the student's run.
     pub effect: DecisionEffect,
 }
 
-/// What became of the decisions of the good play in the own company.
+/// The outcome of applying decisions of the reference play to the student's run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DecisionEffect {
-    /// They were simulated.
+    /// The decisions were simulated.
     Simulated(PartingEffect),
-    /// They are refused there.
+    /// The decisions are rejected in the student's run.
     Refused,
-    /// Later calls name customers, who would have other numbers.
+    /// Later calls name customers, which would have different numbers.
     OtherCustomers,
 }
 
 impl DecisionEffect {
-    /// What they came to, where they were simulated.
+    /// Returns the effect, or `None` if it was not simulated.
     pub fn simulated(self) -> Option<PartingEffect> {
         match self {
             DecisionEffect::Simulated(effect) => Some(effect),
@@ -148,33 +148,33 @@ impl DecisionEffect {
     }
 }
 
-/// What the run would have come to with the decisions of the good play in one week, and all others as they were.
+/// The result of the run with the decisions of the reference play in one week and all other decisions unchanged.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct PartingEffect {
-    /// The last day of both.
+    /// Last day of both simulations.
     pub day: u32,
-    /// Cash as it was, dollars.
+    /// Cash of the run, dollars.
     pub own: f64,
-    /// Cash with the decisions of the good play, dollars.
+    /// Cash with the decisions of the reference play, dollars.
     pub with: f64,
-    /// The same two of the figure that the part is judged by, where that is not cash.
+    /// Both values of the figure by which the part is judged, if it is not cash.
     #[serde(skip)]
     pub judged: Option<(f64, f64)>,
 }
 
-/// What was asked in a step, and what came of it.
+/// The questions, goals and results of a step.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DebriefStep {
-    /// Its title.
+    /// Title of the step.
     pub title: String,
-    /// How often it was tried.
+    /// Number of tries.
     pub tries: u32,
-    /// Hints that were taken, and how many there are.
+    /// Number of hints taken, and of all hints.
     #[serde(serialize_with = "used_of")]
     pub hints: (usize, usize),
-    /// The question, what was guessed and what came of it.
+    /// The question with guess and outcome.
     pub question: Option<LessonQuestion>,
-    /// What was to be reached.
+    /// The goals of the step.
     pub goals: Vec<GoalPage>,
 }
 
@@ -182,7 +182,7 @@ fn used_of<S: Serializer>((used, of): &(usize, usize), serializer: S) -> Result<
     serde_json::json!({ "used": used, "of": of }).serialize(serializer)
 }
 
-/// What the student called, by week: every call but those of the start and of the lesson itself.
+/// Returns the student's calls by week, without those of the start and of the lesson itself.
 fn own_calls(session: &Session, standing: &LessonStanding) -> Vec<ScheduledCalls> {
     let part = standing.own_part();
     let of_lesson = |tool: ToolId| part.moves_capacity() && tool == ToolId::SetCapacityTier;
@@ -203,12 +203,12 @@ fn own_calls(session: &Session, standing: &LessonStanding) -> Vec<ScheduledCalls
     calls.skip(starts).map(scheduled).collect()
 }
 
-/// A figure at the end of each week that has it.
+/// Returns a figure at the end of each week that has a value.
 fn by_day(figure: WeekFigure, weeks: &[WeekFigures]) -> Vec<(u32, f64)> {
     weeks.iter().filter_map(|week| Some((week.day, figure.of_week(week)?))).collect()
 }
 
-/// A play of the part: cash by day, figures of its weeks, and what was decided in each.
+/// A simulated play of the part.
 struct Played {
     cash_by_day: Vec<f64>,
     figures: Vec<WeekFigures>,
@@ -216,17 +216,18 @@ struct Played {
 }
 
 impl PlayedPart {
-    /// The part that a run is, once it is over.
+    /// Reads the part that a session has finished.
     ///
     /// # Errors
     /// `not_in_a_lesson`, `lesson_not_over`.
     pub fn of(session: &Session) -> Result<PlayedPart, Refusal> {
         let Some(standing) = session.lesson() else {
-            let message = "this run belongs to no lesson; novamind lesson list names them";
+            let message = "this run does not belong to a lesson; novamind lesson list shows all lessons";
             return Err(Refusal::new("not_in_a_lesson", message));
         };
         if lesson_step(session).is_some() {
-            let message = "the debrief comes once this part of the lesson is over; lesson shows the task";
+            let message =
+                "the debrief is available when this part of the lesson has ended; lesson shows the task";
             return Err(Refusal::new("lesson_not_over", message));
         }
         let manifest = session.manifest();
@@ -243,8 +244,7 @@ impl PlayedPart {
         })
     }
 
-    /// The debrief. The part is played again four times, in memory; companies are answered by rules where a reference play
-    /// says so.
+    /// Computes the debrief. Simulates the part up to four times in memory; `answers` answers enterprises in plays that use rules.
     pub fn debrief(&self, answers: AnswersCompanies) -> Debrief {
         let plan = &self.standing.lesson.plan;
         let [good, bad, own] = thread::scope(|scope| {
@@ -292,7 +292,7 @@ impl PlayedPart {
         }
     }
 
-    /// The figure at the end of the last week that the first goal of the last step with goals asks for, unless it is cash.
+    /// Returns the figure of the first goal of the last step with goals, if it is a figure of the last week other than cash.
     fn judged_by(&self) -> Option<WeekFigure> {
         let steps = &self.standing.own_part().steps;
         let goal = steps.iter().rev().find_map(|step| step.goals.first())?;
@@ -319,7 +319,7 @@ impl PlayedPart {
         Some(Played { cash_by_day, figures, weeks })
     }
 
-    /// The own decisions beside those of the good play.
+    /// Compares the student's decisions with those of the reference play.
     fn compared(&self, good: &Played, own: &Played, answers: AnswersCompanies) -> DecisionComparison {
         if own.cash_by_day != self.cash_by_day {
             return DecisionComparison::Unknown;
@@ -342,7 +342,7 @@ impl PlayedPart {
         DecisionComparison::Parted(FirstDifference { week: before + 1, day, decisions, effect })
     }
 
-    /// Whether calls of later weeks name customers: after other decisions others come, under other numbers.
+    /// Whether calls of later weeks name customers, whose numbers depend on earlier decisions.
     fn names_customers_after(&self, week: u32) -> bool {
         let later = self.own.iter().filter(|own| own.week > week).flat_map(|own| &own.calls);
         later.into_iter().any(|call| match call {
@@ -360,7 +360,7 @@ impl PlayedPart {
         Some(PartingEffect { day: played.cash_by_day.len() as u32 - 1, own, with, judged })
     }
 
-    /// The own calls, with those of the good play in one week where they differ.
+    /// Returns the student's calls, with the differing calls of one week replaced by those of the reference play.
     fn with_decisions(
         &self,
         week: u32,
@@ -391,7 +391,7 @@ impl PlayedPart {
     }
 }
 
-/// What was asked in a step, and its result; `None` if there is no such step.
+/// Returns the question, the goals and the results of a step, or `None` if the step does not exist.
 pub(super) fn result_of_step(standing: &LessonStanding, step: usize) -> Option<DebriefStep> {
     let own = standing.step(step)?;
     let judged = standing.goals(step);

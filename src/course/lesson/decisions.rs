@@ -1,4 +1,4 @@
-//! What was decided in a week of a lesson, and how two plays differ in it.
+//! The decisions of a week of a lesson, and the differences between two plays.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,39 +8,39 @@ use serde_json::{Map, Value};
 use novamind_session::{JournalEntry, Session};
 use novamind_tools::{Kind, ToolId};
 
-/// What holds in a week, and what was done at its start.
+/// The settings in force in a week, and the one-time actions at its start.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct WeekDecisions {
     /// Settings in force, by the tool that sets them.
     settings: BTreeMap<ToolId, Map<String, Value>>,
-    /// What was done once: tool and arguments, in their order.
+    /// One-time actions in order: tool and arguments.
     deeds: Vec<(ToolId, Value)>,
 }
 
-/// A tool with which something else was decided than in the good play.
+/// A tool whose decisions differ from the reference play.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PartedDecision {
     /// The tool.
     pub tool: ToolId,
-    /// How.
+    /// The difference.
     #[serde(flatten)]
     pub difference: DecisionContrast,
 }
 
-/// How two plays differ in what one tool did.
+/// The difference between two plays in the decisions of one tool.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum DecisionContrast {
-    /// Other settings hold.
+    /// The settings differ.
     Settings {
-        /// Those that differ.
+        /// The settings that differ.
         settings: Vec<SettingContrast>,
     },
-    /// Other calls were made.
+    /// The calls differ.
     Calls {
-        /// Arguments of the own calls.
+        /// Arguments of the student's calls.
         own: Vec<Value>,
-        /// Arguments of the calls of the good play.
+        /// Arguments of the reference play's calls.
         good: Vec<Value>,
     },
 }
@@ -48,16 +48,16 @@ pub enum DecisionContrast {
 /// A setting that differs between two plays.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SettingContrast {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its value in the own play; null if it has none.
+    /// Value in the student's play, or null.
     pub own: Value,
-    /// Its value in the good play; null if it has none.
+    /// Value in the reference play, or null.
     pub good: Value,
 }
 
 impl WeekDecisions {
-    /// What holds when the week begins.
+    /// Returns the decisions in force when the week starts.
     pub(super) fn of(session: &Session) -> WeekDecisions {
         let setting = |tool: ToolId| {
             let current = tool.tool().current(session.settings());
@@ -81,14 +81,14 @@ impl WeekDecisions {
         self.deeds.iter().filter(|(own, _)| *own == tool).map(|(_, args)| args.clone()).collect()
     }
 
-    /// Calls that lead to what was decided with some tools.
+    /// Returns calls that reproduce the decisions of the selected tools.
     pub(super) fn calls_of(&self, tools: &dyn Fn(&ToolId) -> bool) -> Vec<(ToolId, Value)> {
         let settings = self.settings.iter().map(|(tool, args)| (*tool, Value::Object(args.clone())));
         settings.chain(self.deeds.iter().cloned()).filter(|(tool, _)| tools(tool)).collect()
     }
 }
 
-/// With which tools something else was decided than in the good play.
+/// Returns the tools whose decisions differ from the reference play.
 pub(super) fn parted(own: &WeekDecisions, good: &WeekDecisions) -> Vec<PartedDecision> {
     let settings = own.settings.iter().filter_map(|(tool, settings)| {
         let other = good.settings.get(tool)?;
@@ -116,7 +116,7 @@ pub(super) fn parted(own: &WeekDecisions, good: &WeekDecisions) -> Vec<PartedDec
     settings.chain(deeds).collect()
 }
 
-/// Whether two values say the same: 12 and 12.0 do, and nothing is as good as zero.
+/// Whether two values are equal: 12 equals 12.0, and null equals zero.
 fn is_same(one: &Value, other: &Value) -> bool {
     let number = |value: &Value| if value.is_null() { Some(0.0) } else { value.as_f64() };
     match (number(one), number(other)) {
@@ -125,13 +125,13 @@ fn is_same(one: &Value, other: &Value) -> bool {
     }
 }
 
-/// The values of nested arguments, by the names that lead to them: `content_marketing S1`.
+/// Flattens nested arguments; the keys are their paths, such as `content_marketing S1`.
 fn leaves(arguments: &Map<String, Value>) -> BTreeMap<String, Value> {
     let mut found = BTreeMap::new();
     for (name, value) in arguments {
         match value {
             Value::Object(inner) => found.extend(leaves(inner).into_iter().map(|(deeper, value)| {
-                // The argument that holds all of them names nothing.
+                // The name of a single outer argument adds no information.
                 let path = if arguments.len() == 1 { deeper } else { format!("{name} {deeper}") };
                 (path, value)
             })),

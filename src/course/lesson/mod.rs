@@ -1,4 +1,4 @@
-//! A lesson as its student meets it: the page, answers and hints, further tries and parts, the debrief.
+//! The student's side of a lesson: page, answers and hints, further tries and parts, debrief.
 
 pub(crate) mod answers;
 pub(crate) mod debrief;

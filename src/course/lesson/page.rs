@@ -1,4 +1,4 @@
-//! What a student sees of a lesson: the task, the goals with what they stand at, hints, pitfalls.
+//! The lesson page of a student: task, goals with current values, hints, pitfalls.
 
 use serde::Serialize;
 
@@ -9,93 +9,94 @@ use novamind_record::trajectory::record::LessonNote;
 use novamind_session::{Session, lesson_step, measure, weeks_passed};
 use novamind_tools::ToolId;
 
-/// What a student sees of a lesson.
+/// The lesson page of a student.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LessonPage {
     /// Title of the lesson.
     pub title: String,
-    /// Title of the part, where there are several.
+    /// Title of the part, if the lesson has several parts.
     pub part: Option<String>,
-    /// The step that goes on, or the last one.
+    /// The current step, counted from 0; the last one if the part has ended.
     pub step: usize,
-    /// How many steps the part has.
+    /// Number of steps of the part.
     pub steps: usize,
     /// Title of the step.
     pub step_title: String,
-    /// What the student reads.
+    /// Text of the step.
     pub text: String,
-    /// Weeks of the step that have passed, and how many it takes.
+    /// Completed weeks of the step, and its number of weeks.
     pub weeks: (u32, u32),
-    /// Which try of the step it is.
+    /// Number of the try of the step, counted from 1.
     pub try_number: u32,
     /// The question of the step.
     pub question: Option<LessonQuestion>,
     /// The goals of the step.
     pub goals: Vec<GoalPage>,
-    /// Hints that were given.
+    /// Hints that were taken.
     pub hints: Vec<String>,
-    /// How many hints the step has.
+    /// Number of hints of the step.
     pub hints_in_all: usize,
-    /// What was said of the pitfalls that were met, with the day.
+    /// Day and text of each pitfall that was met.
     pub pitfalls: Vec<(u32, String)>,
-    /// What the step before came to, until a week of this one has passed.
+    /// Results of the previous step, until a week of this one has passed.
     pub before: Option<DebriefStep>,
-    /// Whether the part is over.
+    /// Whether the part has ended.
     pub is_over: bool,
-    /// Number of the next part, counted from 1, once this one is over and there is one.
+    /// Number of the next part, counted from 1, if this part has ended and is not the last one.
     pub next_part: Option<u32>,
-    /// Whether others can play its world from day 0: the lesson is over, and nothing was played or set for the student.
+    /// Whether opponents can play the same world from day 0: the lesson has ended, and its last part starts with an empty
+    /// company and sets no parameters.
     pub has_opponents: bool,
-    /// Names of the screens that the lesson has besides the Overview; all where none are named.
+    /// Names of the available screens besides the Overview; `None` for all screens.
     pub screens: Option<Vec<String>>,
-    /// The tools that the lesson has; all where none are named.
+    /// The available tools; `None` for all tools.
     pub tools: Option<Vec<ToolId>>,
-    /// Whether a week runs without forecasts and rationale of the student.
+    /// Whether the student can run a week without entering forecasts or a rationale.
     pub runs_at_once: bool,
 }
 
 /// The question of a step.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LessonQuestion {
-    /// The question.
+    /// Text of the question.
     pub text: String,
-    /// What can be chosen; empty where a number is asked for.
+    /// The choices; empty if the question asks for a number.
     pub choices: Vec<String>,
-    /// What a number is counted in.
+    /// Unit of a number.
     pub unit: String,
-    /// What was guessed; of choices the number of the one taken, counted from 1.
+    /// The guess; for choices the number of the selected one, counted from 1.
     pub guess: Option<f64>,
-    /// What came of it, once that is known.
+    /// The outcome, if known.
     pub outcome: Option<f64>,
-    /// Whether that is told at the end of the part, and not of the step.
+    /// Whether the outcome is shown at the end of the part instead of the step.
     #[serde(skip)]
     pub told_at_end: bool,
 }
 
-/// A goal and what it stands at.
+/// A goal and its current value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GoalPage {
-    /// Its text.
+    /// Text of the goal.
     pub text: String,
-    /// What it stands at; none where there is nothing yet.
+    /// Current value; `None` if there is none yet.
     pub value: Option<f64>,
-    /// What is to be reached; none where it is relative to the good play, and not judged yet.
+    /// Value to reach; `None` if it is relative to the reference play and not judged yet.
     pub bound: Option<f64>,
-    /// Whether the least is wanted.
+    /// Whether `bound` is a maximum.
     #[serde(skip)]
     pub wants_least: bool,
-    /// What share of the good play's value is to be reached, where it is relative to that.
+    /// Required share of the reference play's value, if the goal is relative to it.
     #[serde(skip)]
     pub of_good_play: Option<f64>,
-    /// Whether it counts dollars.
+    /// Whether the value is in dollars.
     #[serde(skip)]
     pub in_dollars: bool,
-    /// Whether it was reached, once it is judged.
+    /// Whether the goal was reached; `None` before it is judged.
     pub met: Option<bool>,
 }
 
 impl LessonPage {
-    /// The page of a run; `None` outside lessons.
+    /// Returns the page of a run, or `None` if the run does not belong to a lesson.
     pub fn of(session: &mut Session) -> Option<LessonPage> {
         let standing = session.lesson()?.clone();
         let part = standing.own_part();
@@ -135,7 +136,7 @@ impl LessonPage {
     }
 }
 
-/// The goals of a step. Those that are not judged yet have the value up to the present week.
+/// Returns the goals of a step. Goals that are not judged yet have the value up to the current week.
 fn goal_pages(
     session: &mut Session,
     standing: &LessonStanding,
@@ -148,7 +149,6 @@ fn goal_pages(
     let page = |(at, goal): (usize, LessonGoal)| {
         let note = judged.get(at).copied();
         let page = GoalPage::of(standing, &goal, note);
-        // What is not judged yet stands where the weeks so far have brought it.
         let is_open = note.is_none() && passed > 0;
         let so_far = is_open.then(|| measure(&goal.measurement, session, from).ok().flatten()).flatten();
         GoalPage { value: page.value.or(so_far), ..page }
@@ -157,7 +157,7 @@ fn goal_pages(
 }
 
 impl GoalPage {
-    /// A goal, and its result if it is judged.
+    /// Creates the view of a goal, with its result if it is judged.
     pub(super) fn of(standing: &LessonStanding, goal: &LessonGoal, judged: Option<&LessonNote>) -> GoalPage {
         let of_good_play = match goal.bound {
             GoalBound::OfGoodPlay(share) => Some(share),

@@ -9,20 +9,20 @@ use novamind_record::trajectory::record::{LessonEvent, LessonNote};
 use novamind_session::{LessonEntry, NewRun, Session, Storage, branch_of_lesson};
 use novamind_tools::Refusal;
 
-/// Tries a step again from its beginning, counted from 0, in a separate run that counts the tries.
+/// Retries a step, counted from 0, from its beginning. Returns a separate run that counts the tries.
 ///
 /// # Errors
-/// `not_in_a_lesson`, `step_unknown` for a step that has not begun, `not_saved`.
+/// `not_in_a_lesson`, `step_unknown` for a step that has not started, `not_saved`.
 pub fn try_step_again(session: &Session, step: usize) -> Result<Session, Refusal> {
     let Some(standing) = session.lesson() else {
-        return Err(Refusal::new("not_in_a_lesson", "this run belongs to no lesson"));
+        return Err(Refusal::new("not_in_a_lesson", "this run does not belong to a lesson"));
     };
     if !standing.has_begun(step) {
         let message = format!("choose a step from 1 to {}", standing.last_begun() + 1);
         return Err(Refusal::at("step", "step_unknown", message));
     }
     let Some(folder) = session.folder() else {
-        return Err(Refusal::new("not_saved", "a run in memory cannot be tried again"));
+        return Err(Refusal::new("not_saved", "a run in memory cannot be retried"));
     };
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).map_err(not_saved)?;
     let begun = standing.own_part().weeks_of(step).0 * session.params().run.days_per_week;
@@ -35,13 +35,13 @@ pub fn try_step_again(session: &Session, step: usize) -> Result<Session, Refusal
     Ok(again)
 }
 
-/// Begins another part of the lesson of a run, counted from 0, in the same folder of runs.
+/// Starts another part of the run's lesson, counted from 0, in the same folder of runs.
 ///
 /// # Errors
 /// `not_in_a_lesson`, `part_unknown`, `not_saved`.
 pub fn begin_part(session: &Session, part: usize) -> Result<Session, Refusal> {
     let Some(standing) = session.lesson() else {
-        return Err(Refusal::new("not_in_a_lesson", "this run belongs to no lesson"));
+        return Err(Refusal::new("not_in_a_lesson", "this run does not belong to a lesson"));
     };
     let parts = standing.lesson.plan.parts.len();
     if part >= parts {

@@ -1,4 +1,4 @@
-//! Days that are simulated again.
+//! Re-simulation of days with edits.
 
 use std::ops::ControlFlow;
 use std::sync::{Arc, OnceLock};
@@ -22,48 +22,48 @@ use novamind_world::identifiers::ByGroup;
 use novamind_world::market::surges::week_end;
 use novamind_world::state::World;
 
-/// What came of days that were simulated again.
+/// The results of a re-simulation.
 pub(crate) struct BranchOutcome {
-    /// Figures of the weeks that ended.
+    /// Figures of the completed weeks.
     pub weeks: Vec<WeekFigures>,
     /// Figures of every day.
     pub days: Vec<DayFigures>,
-    /// Mean satisfaction of the individual subscribers at the end of each of those weeks; not a number without any.
+    /// Mean satisfaction of individual subscribers at the end of each of these weeks; NaN without subscribers.
     pub satisfaction: Vec<f64>,
-    /// Figures of every group in each of those weeks.
+    /// Figures of every group in each of these weeks.
     pub groups: Vec<ByGroup<MeasuredGroup>>,
-    /// Day and hash of every state that the moves of the run named, where hashes were asked for.
+    /// Day and hash of every state that the recorded steps name, if hashes are requested.
     #[cfg_attr(not(test), expect(dead_code, reason = "tests compare states"))]
     pub states: Vec<(u32, StateHash)>,
-    /// Calls that are refused now.
+    /// Calls that the branch rejects.
     pub refused: Vec<RefusedCall>,
-    /// Parameters that do not fit the others: day, key, why. They are not set.
+    /// Parameter changes that are invalid in the branch and therefore omitted: day, key, reason.
     pub unfit: Vec<(u32, String, Refusal)>,
-    /// Calls that the run refused and that would be accepted now; they are not made.
+    /// Calls that the run rejected and the branch would accept; they are not made.
     pub possible: Vec<PastCall>,
-    /// Calls by which the capacity followed usage.
+    /// Calls that adjusted the capacity to usage.
     pub followed: Vec<AddedCall>,
-    /// Why its days ended before their last one, if a day had no room for its leads.
+    /// The reason if the simulation ended early because a day had too many leads.
     pub crowded: Option<Refusal>,
-    /// Where it ended.
+    /// Final state.
     pub end: KeptState,
 }
 
-/// A call that is refused when days are simulated again.
+/// A call that is rejected in a re-simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct RefusedCall {
-    /// Its line; none for one that was added.
+    /// Line in the run; `None` for an added call.
     pub seq: Option<u64>,
     /// Decision day.
     pub day: u32,
     /// Tool.
     pub tool: ToolId,
-    /// Why.
+    /// Reason.
     pub refusal: Refusal,
 }
 
-/// Simulates the days after a moment again, up to one of them: the moves of the run under some edits; days that the moves do
-/// not reach pass under the settings in force. None if it was stopped: `progress` is told each day.
+/// Re-simulates the days after a state with edits of the recorded steps. Days after the last step keep the current settings.
+/// `progress` is called once per simulated day. Returns `None` if it stops the simulation.
 pub(crate) fn counterfactual(
     start: &KeptState,
     moves: &[Move],
@@ -76,7 +76,7 @@ pub(crate) fn counterfactual(
     Some(branch.outcome())
 }
 
-/// The same, with the hash of every state that the moves name.
+/// Re-simulates days like [`counterfactual`] and computes the hash of every state that the recorded steps name.
 #[cfg(test)]
 pub(crate) fn counterfactual_with_hashes(
     start: &KeptState,
@@ -89,8 +89,8 @@ pub(crate) fn counterfactual_with_hashes(
     Some(branch.outcome())
 }
 
-/// The first day at whose end two edits of the same moves have led to different companies, or that there is none up to a day.
-/// None if it was stopped: `progress` is told each day.
+/// Returns the first day up to `until` at whose end two edits of the same steps have different states, or an inner `None` if there is
+/// none. Returns an outer `None` if `progress`, called once per simulated day, stops the simulation.
 pub(crate) fn first_difference(
     start: &KeptState,
     moves: &[Move],
@@ -111,25 +111,23 @@ pub(crate) fn first_difference(
     Some(None)
 }
 
-/// Days on the way.
+/// A re-simulation in progress.
 struct OpenBranch<'a> {
     edits: &'a Edits,
-    /// Moves that are still to be made.
     moves: &'a [Move],
     simulation: Simulation,
-    /// Nothing is written.
+    /// Discards all output.
     projection: RunDatabase,
-    /// The week that runs.
     week: WeekFigures,
-    /// The same by group.
+    /// Figures of the current week by group.
     group_week: ByGroup<GroupWeek>,
-    /// Cash before it.
+    /// Cash at the start of the week.
     cash_before: f64,
-    /// Money that calls moved since the last day.
+    /// Ledger entries of calls since the last day.
     called: Vec<LedgerEntry>,
-    /// Whether posts are put into words and facts are hashed.
+    /// Whether posts are worded and facts are hashed.
     told: bool,
-    /// Whether that is left to be done of the last day.
+    /// Whether this is still to be done for the last day.
     left_to_tell: bool,
     numbers: OnceLock<Arc<Numbers>>,
     weeks: Vec<WeekFigures>,
@@ -141,7 +139,7 @@ struct OpenBranch<'a> {
     unfit: Vec<(u32, String, Refusal)>,
     possible: Vec<PastCall>,
     followed: Vec<AddedCall>,
-    /// Why no further day is simulated.
+    /// Reason why no further day is simulated.
     crowded: Option<Refusal>,
 }
 
@@ -180,20 +178,20 @@ impl<'a> OpenBranch<'a> {
         branch
     }
 
-    /// Makes the calls that come before everything else.
+    /// Makes the calls that precede all steps.
     fn open(&mut self) {
         for (tool, args) in &self.edits.opening {
             self.try_new(*tool, args);
         }
     }
 
-    /// Makes the moves, and lets days pass, up to the end of a day.
+    /// Executes steps and simulates days up to the end of a day.
     fn advance(&mut self, until: u32, progress: &mut dyn FnMut(u32) -> ControlFlow<()>) -> Option<()> {
         while let [step, rest @ ..] = self.moves
             && !self.is_over()
         {
             match step {
-                // What is decided on the last day is none of its business.
+                // Decisions on the last day belong to the next day.
                 Move::Call(call) if call.day >= until => break,
                 Move::Parameter(setting) if setting.day >= until => break,
                 Move::Call(call) => self.make(call),
@@ -213,7 +211,7 @@ impl<'a> OpenBranch<'a> {
         self.run_days(until, progress)
     }
 
-    /// Makes a call of the run, as the edits leave it.
+    /// Makes a recorded call with its edits.
     fn make(&mut self, call: &PastCall) {
         if self.edits.dropped.contains(&call.seq) {
             return;
@@ -229,12 +227,11 @@ impl<'a> OpenBranch<'a> {
         self.call(Some(call.seq), call.tool, changed.unwrap_or(&call.args), changed.is_some());
     }
 
-    /// Makes a call that the run did not make.
     fn try_new(&mut self, tool: ToolId, args: &Value) {
         self.call(None, tool, args, true);
     }
 
-    /// A call under the numbers that its companies have here.
+    /// Returns a call with the customer numbers of the branch.
     fn here(&self, tool: ToolId, args: &Value) -> CallHere {
         match &self.edits.meant {
             None => CallHere { args: Some(args.clone()), absent: Vec::new() },
@@ -242,7 +239,7 @@ impl<'a> OpenBranch<'a> {
         }
     }
 
-    /// What a call would do; a new one keeps the bounds of arguments, one of the run was accepted once.
+    /// Plans a call. Only added calls are checked against argument bounds, because recorded ones were accepted before.
     fn plan(&self, tool: ToolId, args: &Value, is_new: bool) -> Result<Command, Refusal> {
         let Simulation { world, params, feed, .. } = &self.simulation;
         let numbers = || self.numbers.get_or_init(|| Numbers::of(params).into()).clone();
@@ -255,7 +252,7 @@ impl<'a> OpenBranch<'a> {
         Ok(planned.command)
     }
 
-    /// Makes a call, and takes down what is refused of it.
+    /// Makes a call and records its rejections.
     fn call(&mut self, seq: Option<u64>, tool: ToolId, args: &Value, is_new: bool) {
         let CallHere { args: here, absent } = self.here(tool, args);
         let is_renumbered = here.as_ref().is_some_and(|here| here != args);
@@ -280,7 +277,7 @@ impl<'a> OpenBranch<'a> {
         Ok(())
     }
 
-    /// Sets a parameter. A value that does not fit the parameters of the branch is left out, as one that waits is.
+    /// Sets a parameter. Omits a value that is invalid in the branch, including one for a later day.
     fn set(&mut self, change: ParameterChange) {
         let (day, key) = (self.simulation.world.day, change.key.clone());
         match self.simulation.overrides.take(&self.simulation.params, change) {
@@ -292,10 +289,10 @@ impl<'a> OpenBranch<'a> {
         }
     }
 
-    /// Sets a parameter that the run did not set.
+    /// Sets an added parameter.
     fn set_anew(&mut self, setting: &AddedSetting) {
         let value = value_of_json(&setting.value);
-        // No line sets it, so its number is none of a line.
+        // No event sets it, so it needs a number that no event has.
         let change =
             |value| ParameterChange { seq: u64::MAX, key: setting.key.clone(), value, from_day: None };
         value.map(change).into_iter().for_each(|change| self.set(change));
@@ -320,7 +317,7 @@ impl<'a> OpenBranch<'a> {
         self.crowded.is_some() || self.simulation.world.is_over(&self.simulation.params)
     }
 
-    /// Does what the edits say of this day: parameters are set, calls are made, capacity follows usage, luck is redrawn.
+    /// Applies the edits of this day: parameters, calls, capacity that follows usage, and redrawn random draws.
     fn follow_edits(&mut self) {
         let (day, edits) = (self.simulation.world.day, self.edits);
         edits.set.iter().filter(|setting| setting.day == day).for_each(|setting| self.set_anew(setting));
@@ -367,7 +364,6 @@ impl<'a> OpenBranch<'a> {
         }
     }
 
-    /// Ends a week.
     fn settle(&mut self) {
         let cash = self.simulation.world.finance.cash;
         self.week.cash_change = cash - self.cash_before;
@@ -379,7 +375,6 @@ impl<'a> OpenBranch<'a> {
         self.cash_before = cash;
     }
 
-    /// Ends days as a line of the run did.
     fn close(&mut self, days: &PastDays) {
         if !self.told {
             return;
@@ -422,7 +417,7 @@ impl<'a> OpenBranch<'a> {
     }
 }
 
-/// Mean satisfaction of the individual subscribers, on its scale; not a number without any.
+/// Returns the mean satisfaction of individual subscribers; NaN without subscribers.
 fn mean_satisfaction(world: &World) -> f64 {
     let individuals = || world.customers.blocks().filter(|(group, _)| !group.is_enterprise());
     let count: usize = individuals().map(|(_, block)| block.len()).sum();

@@ -1,29 +1,29 @@
-//! Companies that calls of a run name, in a branch where they have other numbers.
+//! Customers that recorded calls name, with their numbers in a branch.
 
 use serde_json::Value;
 
 use novamind_tools::{Refusal, ToolId, readdressed};
 use novamind_world::customers::numbers::CustomerNumbers;
 
-/// A call as a branch can make it.
+/// A recorded call with the customer numbers of a branch.
 pub(crate) struct CallHere {
-    /// Its arguments with the numbers of the branch; none where no company of the call has come.
+    /// Arguments with the numbers of the branch; `None` if no named customer exists there.
     pub args: Option<Value>,
-    /// Why it does not reach companies that it names.
+    /// A rejection for each named customer that does not exist in the branch.
     pub absent: Vec<Refusal>,
 }
 
 impl CallHere {
-    /// A call whose numbers mean customers of one company, made in another under the same luck.
+    /// Translates the customer numbers of a recorded call to those of a branch with the same random draws.
     pub fn of(tool: ToolId, args: &Value, meant: &CustomerNumbers, here: &CustomerNumbers) -> CallHere {
         let mut absent = Vec::new();
         let args = readdressed(tool, args, &mut |customer| {
-            // A number that the run did not give means nobody else.
+            // A number that does not exist in the run stays.
             let Some((group, n)) = meant.find(customer) else { return Some(customer) };
             let number = here.of(group, n);
             if number.is_none() {
                 let message = format!(
-                    "customer {customer} of the run, number {n} of {group}, has not come here: fewer leads came"
+                    "customer {customer} of the run, number {n} of {group}, does not exist in this branch: it has fewer leads"
                 );
                 absent.push(Refusal::new("customer_not_found", message));
             }
@@ -33,8 +33,8 @@ impl CallHere {
     }
 }
 
-/// A refusal that names customers by the numbers of the branch.
+/// Adds a note that the rejection uses the numbers of the branch.
 pub(crate) fn in_other_numbers(refusal: Refusal) -> Refusal {
-    let message = format!("{}; numbers are those of the branch", refusal.message);
+    let message = format!("{} (customer numbers of the branch)", refusal.message);
     Refusal { message, ..refusal }
 }

@@ -1,4 +1,4 @@
-//! What is changed when days are simulated again.
+//! Changes to recorded days in a re-simulation.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -12,53 +12,53 @@ use novamind_world::customers::numbers::CustomerNumbers;
 use novamind_world::held::Held;
 use novamind_world::params::Params;
 
-/// Changes to the days of a run. Without any, they lead to the state they led to.
+/// Changes to the days of a run. Without changes, the re-simulation reproduces the recorded states.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Edits {
-    /// Calls that are made before everything else.
+    /// Calls before all recorded steps.
     pub opening: Vec<(ToolId, Value)>,
-    /// Lines of calls that are not made, and of parameters that are not set.
+    /// Lines of omitted calls and parameter changes.
     pub dropped: BTreeSet<u64>,
-    /// Other arguments of calls, by line.
+    /// Changed arguments of calls, by line.
     pub changed: BTreeMap<u64, Value>,
-    /// Calls that are made besides.
+    /// Added calls.
     pub added: Vec<AddedCall>,
-    /// Parameters that are set besides, before those calls.
+    /// Added parameter changes, made before the added calls.
     pub set: Vec<AddedSetting>,
-    /// The capacity follows usage at the start of every week.
+    /// Rule that adjusts the capacity to usage at the start of every week.
     pub capacity: Option<FollowedUsage>,
-    /// The week before all of it, for the first day on which the capacity follows usage.
+    /// Usage of the previous week, for the first adjustment of the capacity.
     pub week_before: Option<WeekFigures>,
-    /// Which customers the calls mean by their numbers; none where numbers are the same in every branch.
+    /// Customers by their numbers in the run; `None` if the numbers are equal in every branch.
     pub meant: Option<Arc<CustomerNumbers>>,
-    /// Inputs of the world that are held.
+    /// Fixed inputs of the world.
     pub held: Held,
-    /// Other parameters.
+    /// Replaced parameters.
     pub params: Option<Arc<Params>>,
-    /// Other luck.
+    /// Redrawn random draws.
     pub redrawn: Option<Redrawn>,
 }
 
-/// By which rule the capacity follows usage, and from which day on.
+/// A rule that adjusts the capacity to usage, with its first day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct FollowedUsage {
     pub rule: UsageRule,
     pub from: u32,
 }
 
-/// Luck that is redrawn after a day.
+/// New random draws after a day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Redrawn {
-    /// The last day with the luck of the run.
+    /// Last day with the random draws of the run.
     pub after: u32,
-    /// Equal salts give equal luck.
+    /// Salt; equal salts give equal draws.
     pub salt: u64,
 }
 
 /// A call that was not made in the run.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct AddedCall {
-    /// Decision day; it is made after the calls of the run on that day.
+    /// Decision day; the call follows the recorded calls of that day.
     pub day: u32,
     /// Tool.
     pub tool: ToolId,
@@ -69,10 +69,10 @@ pub(crate) struct AddedCall {
 /// A parameter that was not set in the run.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct AddedSetting {
-    /// Decision day; it is set after the calls of the run on that day.
+    /// Decision day; the change follows the recorded calls of that day.
     pub day: u32,
     /// Full key.
     pub key: String,
-    /// Its value from then on.
+    /// New value.
     pub value: Value,
 }

@@ -1,4 +1,4 @@
-//! A moment of a run, kept in memory: what everything after it follows from.
+//! The state of a run at the end of a day, in memory, from which simulation can continue.
 
 use std::sync::Arc;
 
@@ -9,30 +9,30 @@ use novamind_world::params::Params;
 use novamind_world::random::Streams;
 use novamind_world::state::World;
 
-/// A company at the end of a day, before anything is decided on it.
+/// The state at the end of a day, before the decisions of that day.
 #[derive(Clone)]
 pub(crate) struct KeptState {
     /// Parameters in force.
     pub params: Arc<Params>,
-    /// What was set of them, and what waits for its day.
+    /// Parameter changes, including those for later days.
     pub overrides: Overrides,
-    /// Its luck.
+    /// Random streams.
     pub streams: Streams,
-    /// What its companies are called.
+    /// Names of enterprises.
     pub names: CompanyNames,
     /// The company and its market.
     pub world: World,
-    /// What was written in public; empty unless a call needs the words.
+    /// Texts of posts; empty unless a call needs them.
     pub feed: Feed,
 }
 
 impl KeptState {
-    /// Day 0 of a run.
+    /// Creates the state of day 0.
     pub(crate) fn opening(manifest: &Manifest, params: Arc<Params>) -> KeptState {
         KeptState::of(Simulation::open(manifest, params))
     }
 
-    /// The moment a simulation has come to.
+    /// Captures the current state of a simulation.
     pub(crate) fn of(simulation: Simulation) -> KeptState {
         let Simulation { params, overrides, streams, names, world, feed, .. } = simulation;
         KeptState { params, overrides, streams, names, world, feed }

@@ -1,25 +1,25 @@
-//! The record that was asked about last, so that the next question about it begins with what was simulated for this one.
+//! A cache for the analysis of the most recently used record, so that the next question reuses its simulations.
 
 use std::path::{Path, PathBuf};
 
 use novamind_tools::Refusal;
 
-/// What answers questions about a record.
+/// An analysis of a record.
 pub trait OfRecord: Sized {
-    /// Of the run in a folder, as far as it is recorded now.
+    /// Opens the current record of the run in a folder.
     ///
     /// # Errors
-    /// The record may not be asked about, or cannot be read.
+    /// Returns a rejection if the analysis is not permitted or the record cannot be read.
     fn read(folder: &Path) -> Result<Self, Refusal>;
 
-    /// Takes in what has been recorded since.
+    /// Reads new events.
     ///
     /// # Errors
     /// As [`OfRecord::read`].
     fn renew(&mut self) -> Result<(), Refusal>;
 }
 
-/// What was made of a record that was asked about last.
+/// The analysis of the most recently used record.
 pub struct LastRead<T>(Option<(PathBuf, T)>);
 
 impl<T> Default for LastRead<T> {
@@ -29,10 +29,10 @@ impl<T> Default for LastRead<T> {
 }
 
 impl<T: OfRecord> LastRead<T> {
-    /// What is made of the run in a folder, as far as it is recorded now.
+    /// Returns the analysis of the run in a folder with all recorded events.
     ///
     /// # Errors
-    /// Those of reading it; then nothing is kept.
+    /// As [`OfRecord::read`]; the cache is then empty.
     pub fn of(&mut self, folder: PathBuf) -> Result<&mut T, Refusal> {
         let kept = match self.0.take().filter(|(known, _)| *known == folder) {
             Some((folder, mut made)) => {

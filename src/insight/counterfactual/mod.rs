@@ -1,8 +1,8 @@
-//! What would have been: days of a run simulated again, in memory, with something changed and the same luck.
+//! Counterfactuals: re-simulates days of a run in memory with edits and the same random draws.
 //!
-//! Streams of chance are named by what they are for, so whatever an edit does not touch draws what it drew. No database, no
-//! trajectory, no notices: a [`KeptState`](kept_state::KeptState) of the run, the [`Move`](script::Move)s that follow it, some
-//! [`Edits`](edits::Edits), and the figures that come out.
+//! Random streams are keyed by their purpose, so an edit does not change the draws of other mechanisms. A re-simulation needs no
+//! database, trajectory or notices. Its input is a [`KeptState`](kept_state::KeptState) of the run, the [`Move`](script::Move)s that
+//! follow it, and [`Edits`](edits::Edits); its output are figures.
 
 pub(crate) mod branch;
 pub(crate) mod companies;

@@ -1,11 +1,11 @@
-//! Several simulations at once.
+//! Parallel simulations.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use rayon::ThreadPoolBuilder;
 
-/// Says whether another simulation was stopped: then none of them is wanted any more.
+/// A flag that one simulation sets to stop all others.
 pub(crate) struct Stopped(AtomicBool);
 
 impl Stopped {
@@ -14,7 +14,7 @@ impl Stopped {
     }
 }
 
-/// Whether to go on with work that a flag stops.
+/// Breaks if the flag is set.
 pub fn unless_stopped(stop: &AtomicBool) -> ControlFlow<()> {
     match stop.load(Ordering::Relaxed) {
         true => ControlFlow::Break(()),
@@ -22,10 +22,9 @@ pub fn unless_stopped(stop: &AtomicBool) -> ControlFlow<()> {
     }
 }
 
-/// Works on each of some tasks, in their order; none if one of them was stopped, which stops the others.
+/// Applies a function to tasks in parallel and returns the results in order. Returns `None` if a task is stopped, which stops all.
 ///
-/// Each processor simulates one after the other: no two of them wait for each other, and there are never more companies in
-/// memory than processors.
+/// One thread per processor takes tasks in turn, so memory contains at most one company per processor.
 pub(crate) fn one_each<T: Sync, R: Send>(
     tasks: &[T],
     work: impl Fn(&T, &Stopped) -> Option<R> + Sync,

@@ -1,4 +1,4 @@
-//! A recorded run, as far as its days can be simulated again.
+//! A recorded run whose days can be re-simulated.
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -14,30 +14,27 @@ use novamind_record::folder::manifest::Manifest;
 use novamind_record::lesson::is_lesson_over;
 use novamind_session::{Origin, read_recorded as read};
 
-/// Moments that are kept in memory besides the first: a moment is as large as its company.
+/// Maximum number of states in memory besides day 0; each is as large as the company.
 const KEPT: usize = 4;
 
-/// The moves of a run, and moments from which they can be made again.
+/// The recorded steps of a run, and states from which they can be repeated.
 pub(crate) struct Past {
-    /// The file they were read from.
+    /// Trajectory file.
     path: PathBuf,
-    /// How long it was then, in bytes.
+    /// Length of the file when it was read, bytes.
     length: u64,
-    /// What the run is.
     pub(crate) manifest: Manifest,
-    /// Everything that moved it on.
     moves: Vec<Move>,
-    /// Whether it is over, and the lesson that it belongs to with it.
+    /// Whether the run and, if any, its lesson have ended.
     pub(crate) ended: bool,
-    /// Moments by day.
     kept: BTreeMap<u32, Arc<KeptState>>,
 }
 
 impl Past {
-    /// The past of the run in a folder, or of a trajectory file.
+    /// Opens the run in a folder, or a trajectory file.
     ///
     /// # Errors
-    /// It is missing, damaged or of another version.
+    /// Returns an error if the record is missing, damaged or has another version.
     pub(crate) fn read(path: &Path) -> Result<Past, RunError> {
         let (Origin { path, manifest, params, .. }, trajectory) = read(path)?;
         let length = trajectory.length;
@@ -53,7 +50,7 @@ impl Past {
         })
     }
 
-    /// Takes in what has been recorded since; moments that lead to it are kept.
+    /// Reads new events and keeps the states that are still valid.
     ///
     /// # Errors
     /// As [`Past::read`].
@@ -69,27 +66,25 @@ impl Past {
         Ok(())
     }
 
-    /// The moves that follow a day and lead no further than another.
+    /// Returns the steps after one day up to another.
     pub(crate) fn between(&self, from: u32, until: u32) -> &[Move] {
         between(&self.moves, from, until)
     }
 
-    /// The last day that was simulated.
     pub(crate) fn last_day(&self) -> u32 {
         self.last_end(u32::MAX)
     }
 
-    /// Days of a week.
     pub(crate) fn days_per_week(&self) -> u32 {
         self.kept[&0].params.run.days_per_week
     }
 
-    /// Whether days of the record end on a day.
+    /// Whether recorded days end on a day.
     pub(crate) fn ends_on(&self, day: u32) -> bool {
         day == 0 || self.moves.iter().any(|step| matches!(step, Move::Days(days) if days.until == day))
     }
 
-    /// The last day up to another on which days of the record end.
+    /// Returns the last day up to another on which recorded days end.
     pub(crate) fn last_end(&self, until: u32) -> u32 {
         let ends = self.moves.iter().filter_map(|step| match step {
             Move::Days(days) => Some(days.until),
@@ -98,17 +93,17 @@ impl Past {
         ends.take_while(|day| *day <= until).last().unwrap_or(0)
     }
 
-    /// The run at the end of a day on which days of the record end, simulated from the nearest moment before it that is
-    /// kept. None if it was stopped: `progress` is told each day.
+    /// Returns the state at the end of a day on which recorded days end, simulated from the nearest stored state. `progress` is
+    /// called once per simulated day. Returns `None` if it stops the simulation.
     ///
     /// # Errors
-    /// The record does not lead to the state it names.
+    /// Returns an error if the simulation does not reproduce the recorded state.
     pub(crate) fn moment(
         &mut self,
         day: u32,
         progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
     ) -> Result<Option<Arc<KeptState>>, RunError> {
-        let (from, nearest) = self.kept.range(..=day).next_back().expect("day 0 is always kept");
+        let (from, nearest) = self.kept.range(..=day).next_back().expect("day 0 is always stored");
         if *from == day {
             return Ok(Some(nearest.clone()));
         }
@@ -126,10 +121,10 @@ impl Past {
         Ok(Some(moment))
     }
 
-    /// Whether a moment is the one that the record names on a day.
+    /// Compares a state with the recorded hash of its day.
     ///
     /// # Errors
-    /// It is another.
+    /// Returns an error if they differ.
     pub(crate) fn compare(&self, day: u32, reached: &KeptState) -> Result<(), RunError> {
         let recorded = self.moves.iter().find_map(|step| match step {
             Move::Days(days) if days.until == day => Some(&days.parts),
@@ -142,7 +137,7 @@ impl Past {
         });
         let Some(differs) = differs.filter(|_| day > 0) else { return Ok(()) };
         Err(RunError::NotPossible(format!(
-            "{}: simulated again, day {day} is not the one on record (different: {}). Nothing was changed; \
+            "{}: the re-simulation of day {day} differs from the record (different: {}). Nothing was changed; \
              `novamind verify` names the line",
             self.path.display(),
             differs.part

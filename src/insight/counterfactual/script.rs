@@ -1,4 +1,4 @@
-//! What was done in a run and how its days passed, line by line.
+//! The recorded steps of a run: calls, parameter changes and simulated days.
 
 use std::collections::BTreeMap;
 
@@ -9,18 +9,18 @@ use novamind_record::trajectory::{Line, Record};
 use novamind_session::engine::{ParameterChange, json_of_value};
 use novamind_tools::{Kind, ToolId};
 
-/// Something that moved the company on.
+/// A recorded step that changed the company.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Move {
-    /// A call that could act on the company.
+    /// A call that can change the company.
     Call(PastCall),
-    /// A parameter was set.
+    /// A parameter change.
     Parameter(PastSetting),
-    /// Days passed.
+    /// Simulated days.
     Days(PastDays),
 }
 
-/// A call of the past.
+/// A recorded call.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PastCall {
     /// Its line.
@@ -33,16 +33,16 @@ pub struct PastCall {
     pub args: Value,
     /// Whether it was accepted.
     pub accepted: bool,
-    /// The call that it undid or redid; what it sets stays, whatever becomes of that one.
+    /// Line of the call that it undid or redid. Its settings stay even if that call is edited.
     pub reversal: Option<Reversal>,
 }
 
-/// Something that was decided in the past.
+/// A recorded decision.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PastDecision {
     /// A call.
     Call(PastCall),
-    /// A parameter that was set.
+    /// A parameter change.
     Parameter {
         /// Its line.
         seq: u64,
@@ -50,9 +50,9 @@ pub enum PastDecision {
         day: u32,
         /// Full key.
         key: String,
-        /// Value that it was set to.
+        /// New value.
         value: Value,
-        /// First day that was simulated with it; none: it acted at once.
+        /// First day that was simulated with it; `None` if it applied immediately.
         from_day: Option<u32>,
     },
 }
@@ -72,7 +72,7 @@ impl PastDecision {
         }
     }
 
-    /// The call that it is.
+    /// Returns the call, or `None` for a parameter change.
     pub fn call(&self) -> Option<&PastCall> {
         match self {
             PastDecision::Call(call) => Some(call),
@@ -80,10 +80,10 @@ impl PastDecision {
         }
     }
 
-    /// What is to be said of it: that it was refused, what it undid, or since when it acts; nothing of most.
+    /// Describes the status: rejected, undone or redone call, or first day of a parameter. Empty for other decisions.
     pub fn remark(&self) -> String {
         match self {
-            PastDecision::Call(PastCall { accepted: false, .. }) => "refused".to_owned(),
+            PastDecision::Call(PastCall { accepted: false, .. }) => "rejected".to_owned(),
             PastDecision::Call(PastCall { reversal: Some(Reversal::Undoes(line)), .. }) => {
                 format!("undoes line {line}")
             }
@@ -92,12 +92,12 @@ impl PastDecision {
             }
             PastDecision::Call(_) => String::new(),
             PastDecision::Parameter { from_day, .. } => {
-                from_day.map_or(String::new(), |day| format!("from day {day} on"))
+                from_day.map_or(String::new(), |day| format!("from day {day}"))
             }
         }
     }
 
-    /// What a move decided; none where days passed.
+    /// Returns the decision of a step, or `None` for simulated days.
     pub(crate) fn of(step: &Move) -> Option<PastDecision> {
         match step {
             Move::Call(call) => Some(PastDecision::Call(call.clone())),
@@ -113,35 +113,34 @@ impl PastDecision {
     }
 }
 
-/// A parameter that was set in the past.
+/// A recorded parameter change.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PastSetting {
-    /// Day on which it was set.
+    /// Day of the change.
     pub day: u32,
-    /// What was set.
+    /// The change.
     pub change: ParameterChange,
 }
 
-/// Days of the past.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PastDays {
-    /// The last of them.
+    /// Last day.
     pub until: u32,
-    /// Hash of the state they led to.
+    /// Hash of the state at the end.
     pub state_hash: String,
-    /// Hash of each part of it.
+    /// Hash of each part of the state.
     pub parts: BTreeMap<String, String>,
-    /// What a language model made of the player's posts on the way.
+    /// Scores of the player's posts by a language model.
     pub scores: Vec<JudgedPost>,
 }
 
-/// The moves of some lines, in their order.
+/// Returns the steps of events, in order.
 pub(crate) fn moves(lines: &[Line]) -> Vec<Move> {
     let mut scores = Vec::new();
     lines.iter().filter_map(|line| move_of(line, &mut scores)).collect()
 }
 
-/// The move of a line; scores wait for the days in which they count.
+/// Returns the step of an event. Scores are kept for the days in which they apply.
 fn move_of(line: &Line, scores: &mut Vec<JudgedPost>) -> Option<Move> {
     if let Some(closing) = line.record.closing() {
         let (state_hash, parts) = (closing.state_hash.clone(), closing.parts.clone());
@@ -170,7 +169,7 @@ fn move_of(line: &Line, scores: &mut Vec<JudgedPost>) -> Option<Move> {
     })
 }
 
-/// Those moves that follow a day and lead no further than another; what is decided on a day follows it.
+/// Returns the steps after one day up to another. Decisions of a day follow that day.
 pub(crate) fn between(moves: &[Move], from: u32, until: u32) -> &[Move] {
     let after = |day: u32| {
         let before = |step: &Move| match step {
@@ -184,7 +183,7 @@ pub(crate) fn between(moves: &[Move], from: u32, until: u32) -> &[Move] {
     &moves[first..last.max(first)]
 }
 
-/// Whether an accepted call answers a post of somebody else: then the words of posts matter.
+/// Whether an accepted call replies to another author's post, so that the texts of posts are needed.
 pub(crate) fn has_replies(moves: &[Move]) -> bool {
     moves.iter().any(|step| match step {
         Move::Call(call) => {

@@ -1,4 +1,4 @@
-//! A company that tests play, to simulate its days again.
+//! A company for tests of re-simulation.
 
 use std::path::Path;
 
@@ -9,10 +9,10 @@ use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
 use novamind_session::{NewRun, Session, Storage};
 
-/// Weeks that are played before a change.
+/// Weeks before a change.
 pub(crate) const WEEKS: u32 = 7;
 
-/// A company that has customers, plays some weeks, and then one under a change.
+/// Plays several weeks of a company with customers, then one week after a change.
 pub(crate) fn played(runs: &Path, mode: Mode, seed: u64, change: Option<(&str, Value)>) -> Session {
     let new = NewRun {
         seed: Some(seed),

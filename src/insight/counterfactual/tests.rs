@@ -1,4 +1,4 @@
-//! The past leads to where it led; what is not edited keeps its luck.
+//! Re-simulations reproduce recorded states; unedited mechanisms keep their random draws.
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -54,14 +54,13 @@ fn without_an_edit_every_recorded_state_is_reached_again() {
 fn a_moment_leads_to_the_recorded_state_from_wherever_it_is_reached() {
     let mut past = Past::read(&recorded("everything")).expect("a run");
     let days: Vec<u32> = (0..=past.last_day()).step_by(7).filter(|day| past.ends_on(*day)).collect();
-    // Forward, back, and over several weeks at once; every moment is compared with the record.
+    // Forward, backward, and over several weeks; every state is compared with the record.
     for day in days.iter().chain(days.iter().rev()).chain(days.last()) {
         let moment = past.moment(*day, &mut on).expect("the recorded state").expect("it is not stopped");
         assert_eq!(moment.world.day, *day);
     }
 }
 
-/// A week of a run, and what comes of it under some edits.
 fn week_under(edits: Edits) -> BranchOutcome {
     let mut past = Past::read(&recorded("development")).expect("a run");
     let eve = past.moment(35, &mut on).expect("the recorded state").expect("it is not stopped");
@@ -83,7 +82,7 @@ fn what_is_not_edited_keeps_its_luck() {
     assert_eq!((&one.drift, &one.yields), (&other.drift, &other.yields));
     let service = |outcome: &BranchOutcome| outcome.days.iter().map(|day| day.outage).collect::<Vec<_>>();
     assert_eq!(service(&free), service(&dear));
-    // What acts from tomorrow on changes nothing of today but what it costs.
+    // A setting that applies from the next day changes only the costs of the current day.
     let spend = AddedCall { day: 35, tool: ToolId::SetDailySpend, args: json!({"development": 700}) };
     let developed = week_under(Edits { added: vec![spend], ..Edits::default() });
     let today = |outcome: &BranchOutcome| (outcome.days[0].new_leads, outcome.days[0].cancellations);
@@ -115,7 +114,7 @@ fn inputs_are_held_for_the_days_that_are_simulated_and_work_can_be_stopped() {
     assert!(stopped.is_none());
 }
 
-/// A debug run of six weeks, in which parameters are set if they are to be.
+/// Plays a debug run of six weeks, optionally with parameter changes.
 fn with_parameters(folder: &Path, set: bool) -> Session {
     let new = NewRun {
         mode: Mode::Debug,
@@ -160,9 +159,9 @@ fn without_an_edit_a_run_with_set_parameters_reaches_its_states_from_wherever_it
     for day in [42, 35, 14, 21, 28, 0, 7, 42] {
         past.moment(day, &mut on).expect("the recorded state").expect("it is not stopped");
     }
-    // What waits for its day is kept with a moment.
+    // A stored state includes parameter changes for later days.
     let eve = past.moment(28, &mut on).expect("the recorded state").expect("it is not stopped");
-    assert_eq!(eve.overrides.waiting().count(), 0, "what is decided on a day follows it");
+    assert_eq!(eve.overrides.waiting().count(), 0, "decisions of a day follow that day");
     let later = past.moment(35, &mut on).expect("the recorded state").expect("it is not stopped");
     assert_eq!(later.overrides.waiting().count(), 2);
     let outcome = counterfactual(&later, past.between(35, 42), &Edits::default(), 42, &mut on);
@@ -188,7 +187,7 @@ fn a_run_whose_settings_of_parameters_are_dropped_is_the_run_without_them() {
     let outcome = counterfactual(&opening, past.between(0, 42), &edits, 42, &mut on).expect("an outcome");
     assert_eq!(outcome.weeks, plain.weeks());
     assert_ne!(outcome.weeks, changed.weeks());
-    // And so for those that wait at a moment.
+    // The same applies to changes that a stored state contains.
     let later = past.moment(35, &mut on).expect("the recorded state").expect("it is not stopped");
     let dropped = later.overrides.waiting().map(|change| change.seq).collect();
     let edits = Edits { dropped, ..Edits::default() };

@@ -1,4 +1,4 @@
-//! Who sees what: the truth is a look inside, and everybody else sees what studies have told.
+//! Access to curves: the true curve needs an inspection; otherwise the curve comes from estimates of market studies.
 
 use std::sync::Arc;
 
@@ -10,10 +10,10 @@ use novamind_world::customers::drift::Expectation;
 use novamind_world::identifiers::{ByPlan, Group, Plan};
 use novamind_world::retention::renewal::ongoing_discount;
 
-/// No customer has the number 0: promotions of single customers are left out.
+/// A number that no customer has, which excludes discounts of single customers.
 const NOBODY: u32 = 0;
 
-/// A look at the traits of a group that was allowed and recorded: without one they are not shown.
+/// A permitted and recorded inspection of the traits of a group. The true curve requires one.
 #[derive(Debug)]
 pub struct CurveLook {
     group: Group,
@@ -21,7 +21,7 @@ pub struct CurveLook {
 }
 
 impl CurveLook {
-    /// Records a look at the curve of a group as it is on a day.
+    /// Records an inspection of the curve of a group on a day.
     ///
     /// # Errors
     /// `not_in_this_mode`, `not_saved`.
@@ -31,8 +31,8 @@ impl CurveLook {
 }
 
 impl CurveExplorer {
-    /// The explorer of a group, as far as the player may know: of its traits in debug runs and in runs that are over, where
-    /// the look is recorded, and of what studies have told in all others.
+    /// Opens the explorer of a group with the information that the player may see: the true traits in debug runs and finished
+    /// runs, where the inspection is recorded, and the estimates of market studies in all other runs.
     ///
     /// # Errors
     /// `group_not_discovered`, `guess_first`, `not_saved`.
@@ -44,7 +44,7 @@ impl CurveExplorer {
         Ok(CurveExplorer::true_at(run, &look))
     }
 
-    /// The explorer of the traits of a group at this moment of the run.
+    /// Returns the explorer of the true traits of a group at the current moment of the run.
     pub fn true_at(run: &Session, CurveLook { group, look }: &CurveLook) -> CurveExplorer {
         let inside = look.inside(run);
         let (world, params) = (inside.world(), inside.params());
@@ -56,7 +56,7 @@ impl CurveExplorer {
         CurveExplorer::drawn(*group, basis, on_offer(run, *group, &quality), vec![market])
     }
 
-    /// The explorer of what studies have told of a group. In a lesson it waits for the guess, which it would answer.
+    /// Returns the explorer of the estimates of market studies. In a lesson it requires the guess, because it would reveal the answer.
     ///
     /// # Errors
     /// `group_not_discovered`, `guess_first`.
@@ -74,7 +74,7 @@ impl CurveExplorer {
                 format!("group {group} is not known yet; the known groups are {}", known.join(", "));
             return Err(Refusal::at("group", "group_not_discovered", message));
         };
-        // What the market has added since the study is not known.
+        // Drift since the study is unknown.
         let market = |reading| (Expectation::default(), Arc::new(market_of(own, reading, run.params())));
         let markets = [Reading::Likely, Reading::Strict, Reading::Generous].map(market).into();
         let basis = CurveBasis::Estimates { level: own.level, noise: own.noise, as_of: own.as_of };
@@ -82,7 +82,7 @@ impl CurveExplorer {
     }
 }
 
-/// Prices, qualities and quotas in force, and promotions: all of it is shown to the player elsewhere.
+/// Returns current prices, qualities, quotas and discounts, all of which the player can see elsewhere.
 fn on_offer(run: &Session, group: Group, quality: &ByPlan<f64>) -> OnOffer {
     let (settings, params) = (run.settings(), run.params());
     let promotion = if group.is_enterprise() { 0.0 } else { settings.lead_promotion.sum(group, None) };

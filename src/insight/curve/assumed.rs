@@ -1,35 +1,35 @@
-//! A group as studies tell of it. They name means within an error and say nothing of how widely a group spreads or how far its
-//! curve rises; that is assumed alike for every group, and no number of the run goes into it.
+//! A group according to its market studies. They give means within an error, but neither the spread of the group nor the rise of its
+//! curve. These are assumed to be equal for every group and do not depend on the run.
 
 use novamind_session::Estimates;
 use novamind_world::params::Params;
 
-/// Spread of budgets, as a share of their mean.
+/// Standard deviation of budgets, as a share of the mean.
 const BUDGET_SPREAD: f64 = 0.4;
-/// Spread of the floor of quality.
+/// Standard deviation of the quality floor.
 const FLOOR_SPREAD: f64 = 0.07;
-/// From the floor to the quality that is required at the budget.
+/// Difference between the quality floor and the required quality at the budget.
 const RISE: f64 = 0.5;
-/// Spread of it.
+/// Standard deviation of that difference.
 const RISE_SPREAD: f64 = 0.08;
-/// Spread of usage, as a share of its mean.
+/// Standard deviation of usage, as a share of the mean.
 const USAGE_SPREAD: f64 = 0.4;
-/// An error of 100 % or more leaves the truth without an upper end: it is drawn at so many times the estimate.
+/// Multiple of the estimate that replaces the upper limit if an error of 100 % or more leaves none.
 const ENDLESS: f64 = 10.0;
 
-/// Which of the groups that fit the estimates is meant.
+/// A group that is consistent with the estimates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Reading {
-    /// The estimates are right.
+    /// The estimates are exact.
     Likely,
-    /// Budgets as small, floors and use as large as the error allows.
+    /// Budgets are as small, and floors and usage as large, as the error allows.
     Strict,
-    /// Budgets as large, floors and use as small as the error allows.
+    /// Budgets are as large, and floors and usage as small, as the error allows.
     Generous,
 }
 
-/// Parameters of a market in which the group is as its estimates say: the shipped ones for everything that is no estimate, and
-/// the forms of the run's scenario, which players are told.
+/// Returns parameters of a market in which the group matches its estimates. Everything else has bundled values, except the curve forms
+/// of the run's scenario, which players can see.
 pub(super) fn market_of(own: &Estimates, reading: Reading, run: &Params) -> Params {
     let end = |value: f64, is_most: bool| {
         let (least, most) = own.range(value);

@@ -1,4 +1,4 @@
-//! A group's curve, the plans as they stand, and what leads would make of other ones.
+//! The curve of a group, the current plans, and the expected decisions of leads about other plans.
 
 use serde::Serialize;
 
@@ -12,84 +12,82 @@ use novamind_world::market::lead_sample::{FirstChoices, LeadSample};
 use novamind_world::params::Params;
 use novamind_world::random::Streams;
 
-/// Leads that are asked.
+/// Number of simulated leads.
 pub const SAMPLED_LEADS: u32 = 2000;
-/// The streams that they are drawn from: the same in every run, and not those of its customers.
+/// Seed of these leads: the same in every run, and different from that of its customers.
 const SEED_OF_SAMPLE: u64 = 0x5EED;
-/// Prices at which the curve is read.
 const STEPS: usize = 60;
-/// Shares of the leads whose curves are told.
 const SHARES: [f64; 3] = [0.1, 0.5, 0.9];
 
-/// What the curve is drawn from.
+/// The source of the curve.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum CurveBasis {
-    /// The traits of the group, with what the market has added to them up to a day.
+    /// The true traits of the group, including drift up to a day.
     Truth {
         /// The day.
         day: u32,
     },
-    /// What studies have told.
+    /// The estimates of market studies.
     Estimates {
-        /// Level of knowledge, 1..=5.
+        /// Study level, 1..=5.
         level: u8,
         /// Largest relative error, 0..1.
         noise: f64,
-        /// Day that floor and budget are of.
+        /// Day of the estimates of floor and budget.
         as_of: u32,
     },
 }
 
-/// A plan that leads are asked about.
+/// A plan that leads evaluate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanPoint {
-    /// List price, dollars a month, of companies per seat.
+    /// List price, dollars a month; for enterprises per seat.
     pub list: f64,
     /// Delivered quality.
     pub quality: f64,
-    /// Units a day; infinite where none is set.
+    /// Quota, units a day; infinite without a quota.
     pub quota: f64,
 }
 
-/// How much quality is required at a price. Infinite where the price is above the budget: no quality wins so many.
+/// Required quality at a price, by share of leads. Infinite if the price is above the budget of too many leads.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurvePoint {
-    /// Dollars a month, of companies per seat.
+    /// Price, dollars a month; for enterprises per seat.
     pub price: f64,
-    /// A tenth of the leads ask for no more.
+    /// Quality that a tenth of the leads requires at most.
     pub tenth: f64,
-    /// Half of them.
+    /// Quality that half of the leads require at most.
     pub median: f64,
-    /// Nine tenths.
+    /// Quality that nine tenths of the leads require at most.
     pub ninetieth: f64,
-    /// Least and greatest median of the groups that fit the estimates; the median itself where the truth is known.
+    /// Minimum and maximum median of the groups that match the estimates; both equal the median for true traits.
     pub median_between: (f64, f64),
 }
 
-/// A figure, and its ends over the groups that fit the estimates.
+/// A figure, with its range over the groups that match the estimates.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Expected {
-    /// If the estimates are right.
+    /// Value if the estimates are exact.
     pub likely: f64,
-    /// Least.
+    /// Minimum.
     pub least: f64,
-    /// Greatest.
+    /// Maximum.
     pub most: f64,
 }
 
-/// What leads would do.
+/// The expected decisions of leads.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurveOutcome {
-    /// Share of leads that sign up; of companies, that ask for an offer.
+    /// Share of leads that sign up; for enterprises, that ask for an offer.
     pub conversion: Expected,
-    /// Dollars a lead with its first bill; none of companies, which negotiate theirs.
+    /// Dollars per lead in the first bill; `None` for enterprises, which negotiate prices.
     pub revenue_per_lead: Option<Expected>,
-    /// Share of leads that take each plan if the estimates are right; none of companies.
+    /// Share of leads that choose each plan if the estimates are exact; `None` for enterprises.
     pub takers: Option<ByPlan<f64>>,
 }
 
-/// Leads of one market, and the parameters that decide for them.
+/// Leads of one market, with the parameters of their decisions.
 struct Market {
     sample: LeadSample,
     params: Arc<Params>,
@@ -99,17 +97,17 @@ struct Market {
 pub struct CurveExplorer {
     /// Group.
     pub group: Group,
-    /// What it is drawn from.
+    /// The source of the curve.
     pub basis: CurveBasis,
-    /// The plans as they stand.
+    /// The current plans.
     pub plans: ByPlan<PlanPoint>,
-    /// Promotion for leads that every channel brings, dollars a month; not for companies.
+    /// Discount for leads of every channel, dollars a month; not for enterprises.
     pub promotion: f64,
-    /// Promotion for subscribers, which makes the first bill cheaper, dollars a month.
+    /// Discount for subscribers, which reduces the first bill, dollars a month.
     pub ongoing: ByPlan<f64>,
-    /// The curve, at prices from 0 up.
+    /// Points of the curve, by ascending price from 0.
     pub points: Vec<CurvePoint>,
-    /// The market, and the two ends of what fits the estimates.
+    /// The market, and both ends of the range that matches the estimates.
     markets: Vec<Market>,
 }
 
@@ -127,7 +125,6 @@ impl Market {
     }
 }
 
-/// What is on offer to a group.
 pub(super) struct OnOffer {
     pub(super) plans: ByPlan<PlanPoint>,
     pub(super) promotion: f64,
@@ -135,7 +132,7 @@ pub(super) struct OnOffer {
 }
 
 impl CurveExplorer {
-    /// Of a group in markets: the likely one first, then those that fit as well.
+    /// Creates the explorer of a group in several markets: the likely one first, then the ends of the range.
     pub(super) fn drawn(
         group: Group,
         basis: CurveBasis,
@@ -155,7 +152,7 @@ impl CurveExplorer {
         explorer
     }
 
-    /// The price at the right end of the curve, dollars a month: nearly all budgets lie below it, and so do the plans.
+    /// Returns the highest price of the curve, dollars a month. Nearly all budgets and all plan prices are below it.
     fn greatest_price(&self) -> f64 {
         let budget = self.markets[0].sample.budget(0.9);
         let plans = self.plans.iter().map(|own| 1.2 * own.list);
@@ -163,7 +160,6 @@ impl CurveExplorer {
         (most / 10.0).ceil().max(1.0) * 10.0
     }
 
-    /// The curve at a price.
     fn point(&self, price: f64) -> CurvePoint {
         let required = |market: &Market, share: &[f64]| market.sample.required(price, share, &market.params);
         let own = required(&self.markets[0], &SHARES);
@@ -177,17 +173,17 @@ impl CurveExplorer {
         }
     }
 
-    /// Whether the truth is known, so that figures have no ends.
+    /// Whether the curve shows true traits, so that figures have no range.
     pub fn is_truth(&self) -> bool {
         matches!(self.basis, CurveBasis::Truth { .. })
     }
 
-    /// What leads would do with these plans, under the promotions in force.
+    /// Returns the expected decisions of leads for these plans, with current discounts.
     pub fn outcome(&self, plans: &ByPlan<PlanPoint>) -> CurveOutcome {
         self.ask(plans, self.promotion, &self.ongoing)
     }
 
-    /// What leads would do with one product of a price and a quality, without quota and promotion.
+    /// Returns the expected decisions of leads for a single product, without quota and discounts.
     pub fn outcome_of(&self, price: f64, quality: f64) -> CurveOutcome {
         let point = PlanPoint { list: price, quality, quota: f64::INFINITY };
         self.ask(&ByPlan([point; 3]), 0.0, &ByPlan([0.0; 3]))
@@ -216,7 +212,7 @@ impl CurveExplorer {
     }
 }
 
-/// The curve of a group's customers as parameters make them, before anything has moved: of no run.
+/// Returns the curve of a group's customers from parameters alone, before any drift.
 pub fn true_curve_of(group: Group, params: &Params) -> Vec<CurvePoint> {
     let nothing = PlanPoint { list: 0.0, quality: 0.0, quota: f64::INFINITY };
     let on_offer = OnOffer { plans: ByPlan([nothing; 3]), promotion: 0.0, ongoing: ByPlan([0.0; 3]) };

@@ -1,8 +1,8 @@
-//! The curve explorer: how much quality a group requires at a price, and what would come of other prices and qualities
+//! The curve explorer: the quality that a group requires at a price, and the results of other prices and qualities
 //! (docs/mechanics/customers/curve-explorer.md).
 //!
-//! In debug runs and in runs that are over it is drawn from the traits of the group itself, and each look is recorded; in all
-//! others from what studies have told, so that nothing hidden can be read off it.
+//! In debug runs and finished runs it uses the true traits of the group, and each inspection is recorded. In all other runs it
+//! uses the estimates of market studies, so that it reveals no hidden state.
 
 pub(crate) mod access;
 pub(crate) mod assumed;

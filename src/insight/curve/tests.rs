@@ -1,4 +1,4 @@
-//! The explorer agrees with the simulator, shows the truth only where looking inside is allowed, and nothing hidden elsewhere.
+//! The explorer agrees with the simulator and shows true traits only if inspections are permitted.
 
 use serde_json::json;
 
@@ -37,7 +37,7 @@ fn explorer(session: &mut Session, group: &str) -> CurveExplorer {
     CurveExplorer::of(session, Group::parse(group).expect("a group")).expect("an explorer")
 }
 
-/// Everything that can be read off an explorer.
+/// Formats everything that an explorer shows.
 fn shown(own: &CurveExplorer) -> String {
     let asked: Vec<_> = [(12.0, 0.2), (30.0, 0.4), (90.0, 0.9)]
         .iter()
@@ -85,7 +85,7 @@ fn nothing_that_studies_do_not_tell_moves_what_an_unfinished_run_shows() {
     for (key, value) in hidden {
         let own = explorer(&mut run(Mode::Lesson, &[(key, value)]), "S1");
         assert_eq!(shown(&own), shown(&explorer(&mut run(Mode::Lesson, &[]), "S1")), "{key}");
-        // In a debug run the same parameter is seen, so it would be seen if it were used.
+        // In a debug run the parameter changes the curve, which shows that the test would detect its use.
         let truth = explorer(&mut run(Mode::Debug, &[(key, value)]), "S1");
         let usual = explorer(&mut run(Mode::Debug, &[]), "S1");
         let alike = key == "group.S1.usage_demand_std";
@@ -110,7 +110,7 @@ fn unfinished_runs_show_estimates_with_ends_and_over_ones_the_truth() {
         });
         assert!(wide);
         let unknown = Group::parse("D_S05").expect("a group");
-        let refused = CurveExplorer::of(&mut session, unknown).expect_err("not found yet");
+        let refused = CurveExplorer::of(&mut session, unknown).expect_err("not discovered");
         assert_eq!(refused.code, "group_not_discovered");
         assert_eq!(CurveLook::begin(&mut session, s1(), 0).expect_err("hidden").code, "not_in_this_mode");
     }
@@ -139,6 +139,6 @@ fn prices_reach_beyond_the_plans_and_the_curve_rises() {
     let last = own.points.last().expect("points");
     assert!(last.price >= 1.2 * 55.0 && last.price % 10.0 == 0.0, "{}", last.price);
     assert!(own.points.windows(2).all(|pair| pair[0].median <= pair[1].median));
-    assert!(last.ninetieth.is_infinite(), "a tenth of the budgets lie below");
+    assert!(last.ninetieth.is_infinite(), "a tenth of the budgets is below the last price");
     assert_eq!(super::example::example_curve().len(), 51);
 }

@@ -1,4 +1,4 @@
-//! Making a branch that keeps the decisions of its run, edited, a run of its own.
+//! Creation of a separate run from a branch with edited decisions.
 
 use std::ops::ControlFlow;
 
@@ -17,21 +17,21 @@ use novamind_session::{Session, UnnamedBranch, not_readable, not_saved};
 use novamind_tools::{Refusal, ToolId};
 use novamind_world::customers::numbers::CustomerNumbers;
 
-/// A branch that was played up to where its run stands.
+/// A branch that was played up to the current day of its run.
 pub struct Adopted {
     /// The branch.
     pub session: Session,
-    /// Calls that it refused, and parameters that it could not set: day, tool or key, why.
+    /// Rejected calls and parameter changes: day, tool or key, reason.
     pub refused: Vec<(u32, String, Refusal)>,
 }
 
-/// Starts a branch at the beginning of a week, counted from 1, and plays it as this run was played, with some decisions
-/// edited: calls are made again, rationales are taken over, forecasts are filled in naively. `progress` is told each day
-/// and can end it early, at the end of a week.
+/// Creates a branch at the start of a week, counted from 1, and repeats the decisions of the run with some edits. Calls are made
+/// again, rationales are copied, and forecasts are naive. `progress` is called once per simulated day and can stop the simulation
+/// at the end of a week.
 ///
 /// # Errors
-/// As for [`Session::branch`], and `line_unknown`, `week_unknown` for an edit. Then there is no branch, as there is none
-/// when the program ends on the way.
+/// As for [`Session::branch`], and `line_unknown`, `week_unknown` for an edit. No branch exists after an error, or if the program
+/// ends during the simulation.
 pub fn branch_with_decisions(
     run: &Session,
     week: u32,
@@ -46,7 +46,7 @@ pub fn branch_with_decisions(
     let trajectory = Trajectory::read(&path).map_err(|error| not_readable(&error))?;
     let follows = |line: &&Line| line.day > from || (line.day == from && !line.closes_days());
     let later: Vec<Line> = trajectory.lines.iter().filter(follows).cloned().collect();
-    // What is wrong with an edit is said before there is a branch.
+    // Edits are validated before the branch is created.
     let known = moves(&later);
     let (settings, params) = (run.settings(), run.params());
     let check = Opening { day: from, settings, params, mode };
@@ -57,21 +57,21 @@ pub fn branch_with_decisions(
     let no_room = |refusal: Refusal| if refusal.code == "not_saved" { no_branch(refusal) } else { refusal };
     let branch = UnnamedBranch::begin(run, week, mode).map_err(no_room)?;
     let mut session = branch.open().map_err(|error| no_branch(not_saved(error)))?;
-    // Whatever is posted again is taken as it was.
+    // Repeated posts keep their recorded scores.
     session.inherit_scores(later.iter().filter_map(scores_of).collect());
     let (settings, params) = (session.settings(), session.params());
     let opening = Opening { day: from, settings, params, mode };
     let mut edits = edits(decided, &opening, &known, until.max(from + 1))?;
     let is_moved = run.lesson().is_some_and(|own| own.own_part().moves_capacity());
     if is_moved && !decided.is_empty() && edits.capacity.is_none() {
-        // The branch is no lesson: what that does by itself is done for it as long as it is played.
+        // The branch is not a lesson, so the automatic capacity changes of the lesson are applied here.
         let followed = FollowedUsage { rule: UsageRule::StepByStep, from };
         let_capacity_follow(followed, &mut edits, &known);
     }
     let mut adopted = Adopting { session, refused: Vec::new(), meant: run.company().customer_numbers() };
     adopted.play(&later, &edits, progress);
     let Adopting { mut session, refused, .. } = adopted;
-    // What the disk did not take, or no memory holds, is no decision of the branch: without it there is no branch.
+    // Disk or memory is insufficient: an incomplete branch is not kept.
     let ends_it = |refusal: &&Refusal| ["not_saved", "too_many_leads"].contains(&refusal.code);
     if let Some(refusal) = refused.iter().map(|(_, _, refusal)| refusal).find(ends_it) {
         return Err(no_branch(refusal.clone()));
@@ -81,7 +81,7 @@ pub fn branch_with_decisions(
     Ok(Adopted { session: branch.name().map_err(|error| no_branch(not_saved(error)))?, refused })
 }
 
-/// What a language model made of a post, if a line says that.
+/// Returns the language model's scores of a post, if an event contains them.
 fn scores_of(line: &Line) -> Option<JudgedPost> {
     match &line.record {
         Record::Voice(VoiceAnswer::Scores(judged)) => Some(judged.clone()),
@@ -89,17 +89,16 @@ fn scores_of(line: &Line) -> Option<JudgedPost> {
     }
 }
 
-/// Why there is no branch.
 fn no_branch(refusal: Refusal) -> Refusal {
-    let message = format!("{}; there is no branch, and this run is as it was", refusal.message);
+    let message = format!("{}; no branch was created, and this run is unchanged", refusal.message);
     Refusal { message, ..refusal }
 }
 
-/// A branch that is being played.
+/// A branch during its simulation.
 struct Adopting<'a> {
     session: Session,
     refused: Vec<(u32, String, Refusal)>,
-    /// Which customers the calls of the run mean.
+    /// Maps customer numbers of the run.
     meant: &'a CustomerNumbers,
 }
 
@@ -108,7 +107,7 @@ impl Adopting<'_> {
         for (tool, args) in &edits.opening {
             self.call(*tool, args);
         }
-        // The days of a week that was begun by its own line are told by the line that closes it.
+        // The closing event of a week includes the days after its starting event.
         let mut is_begun = false;
         for line in later {
             if self.session.ended().is_some() {
@@ -159,7 +158,7 @@ impl Adopting<'_> {
         }
     }
 
-    /// Parameters that are set and calls that are added on this day, and the capacity that follows usage.
+    /// Applies added parameters and calls of this day, and capacity that follows usage.
     fn decide_besides(&mut self, edits: &Edits) {
         let day = self.session.day();
         for setting in edits.set.iter().filter(|setting| setting.day == day) {

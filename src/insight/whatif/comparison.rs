@@ -1,4 +1,4 @@
-//! Branches of a run side by side.
+//! Comparison of branches of a run.
 
 use serde_json::Value;
 
@@ -11,39 +11,39 @@ use novamind_session::engine::json_of_value;
 use novamind_tools::{Kind, Refusal, ToolId};
 use novamind_world::events::DayFigures;
 
-/// Branches of a run, under the same luck.
+/// Branches of a run with the same random draws.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BranchComparison {
-    /// Day on which they part: the start of the week that was named.
+    /// Day on which the branches start: the start of the requested week.
     pub from: u32,
-    /// Last day that was simulated.
+    /// Last simulated day.
     pub until: u32,
-    /// Last day of the record: after it nobody has decided anything, and the settings stay.
+    /// Last day of the record. Later days have no decisions and keep the settings.
     pub recorded_until: u32,
-    /// The run as it was, then each alternative.
+    /// The unchanged run, then each alternative.
     pub branches: Vec<BranchFigures>,
-    /// Figures that may be shown.
+    /// Figures that the player may see.
     pub figures: Vec<BranchFigure>,
 }
 
-/// What came of a branch.
+/// The results of a branch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BranchFigures {
-    /// What was decided otherwise; nothing in the run as it was.
+    /// The edits; empty for the unchanged run.
     pub edits: Vec<DecisionEdit>,
-    /// Its last days of weeks, the first of the what-if first.
+    /// Last day of each week, in ascending order.
     days: Vec<u32>,
     /// Figures on those days.
     weeks: Vec<Values>,
     /// Calls that differ from those of the run, by day.
     pub differences: Vec<DecisionDifference>,
-    /// Parameters that are set otherwise, by day.
+    /// Parameter changes that differ from those of the run, by day.
     pub parameters: Vec<ParameterDifference>,
-    /// Calls that are refused here, and parameters that do not fit: day, tool or key, why.
+    /// Rejected calls and parameter changes: day, tool or key, reason.
     pub refused: Vec<(u32, String, Refusal)>,
-    /// Calls that were refused in the run and would be accepted here: line, day, tool. They are not made.
+    /// Calls that were rejected in the run and would be accepted in the branch: line, day, tool. They are not made.
     pub possible: Vec<(u64, u32, ToolId)>,
-    /// First day at whose end the company is another than in the run as it was; none if there is none.
+    /// First day at whose end the company differs from the unchanged run; `None` if it never differs.
     pub differs_on: Option<u32>,
 }
 
@@ -54,26 +54,26 @@ pub struct DecisionDifference {
     pub day: u32,
     /// Tool.
     pub tool: ToolId,
-    /// Its line in the run; none for a call that is new.
+    /// Line in the run; `None` for an added call.
     pub seq: Option<u64>,
-    /// Its arguments in the run.
+    /// Arguments in the run.
     pub was: Option<Value>,
-    /// Its arguments here; none where it is not made.
+    /// Arguments in the branch; `None` if the call is not made.
     pub is: Option<Value>,
-    /// Of a call that is new: day and line of the next call of its tool, which the run makes later.
+    /// For an added call: day and line of the run's next call of the same tool.
     pub again: Option<(u32, u64)>,
 }
 
-/// A parameter that is set otherwise.
+/// A parameter change that differs from the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ParameterDifference {
-    /// Day from which on it acts.
+    /// Day from which it applies.
     pub day: u32,
     /// Full key.
     pub key: String,
-    /// What the run sets there; none where it does not.
+    /// Value that the run sets, if any.
     pub was: Option<Value>,
-    /// What is set here; none where it is not.
+    /// Value that the branch sets, if any.
     pub is: Option<Value>,
 }
 
@@ -105,24 +105,24 @@ impl BranchFigures {
         }
     }
 
-    /// A figure at the end of each week: its last day and the value.
+    /// Returns a figure at the end of each week, as pairs of day and value.
     pub fn curve(&self, figure: BranchFigure) -> impl Iterator<Item = (u32, f64)> {
         self.days.iter().zip(&self.weeks).map(move |(day, values)| (*day, values[figure as usize]))
     }
 
-    /// A figure at the end of the week that a day closes; none where the branch did not come so far.
+    /// Returns a figure at the end of the week that ends on `day`, or `None` if the branch ended earlier.
     pub fn value(&self, figure: BranchFigure, day: u32) -> Option<f64> {
         self.curve(figure).find(|(own, _)| *own == day).map(|(_, value)| value)
     }
 
-    /// The last day it came to.
+    /// Returns the last simulated day.
     pub fn last_day(&self) -> Option<u32> {
         self.days.last().copied()
     }
 }
 
 impl BranchComparison {
-    /// Days on which figures are read: 4, 12 and 26 weeks after the branches part, and the last.
+    /// Returns the days for which figures are shown: 4, 12 and 26 weeks after the start of the branches, and the last day.
     pub fn milestones(&self, days_per_week: u32) -> Vec<u32> {
         let weeks = [4, 12, 26].map(|weeks| self.from + weeks * days_per_week);
         let mut days: Vec<u32> = weeks.into_iter().filter(|day| *day < self.until).collect();
@@ -131,12 +131,11 @@ impl BranchComparison {
     }
 }
 
-/// A call that the run did not make.
+/// Returns the difference for a call that the run did not make.
 fn new_call(day: u32, tool: ToolId, args: &Value) -> DecisionDifference {
     DecisionDifference { day, tool, seq: None, was: None, is: Some(args.clone()), again: None }
 }
 
-/// The calls that edits change.
 fn differences(edits: &Edits, moves: &[Move], from: u32) -> Vec<DecisionDifference> {
     let opening = edits.opening.iter().map(|(tool, args)| new_call(from, *tool, args));
     let next = |added: &AddedCall| {
@@ -164,7 +163,7 @@ fn differences(edits: &Edits, moves: &[Move], from: u32) -> Vec<DecisionDifferen
     opening.chain(of_run).chain(added).collect()
 }
 
-/// The parameters that are set otherwise, by day.
+/// Returns the parameter changes that edits change, by day.
 fn parameters(edits: &Edits, moves: &[Move]) -> Vec<ParameterDifference> {
     let dropped = moves.iter().filter_map(|step| match step {
         Move::Parameter(PastSetting { day, change }) if edits.dropped.contains(&change.seq) => {

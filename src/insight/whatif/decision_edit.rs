@@ -1,4 +1,4 @@
-//! What is decided otherwise in a what-if, and how that is written.
+//! Edits of decisions in a what-if, and their syntax.
 
 use std::fmt::{self, Display, Formatter};
 use std::str::FromStr;
@@ -15,58 +15,57 @@ use novamind_tools::{ArgumentKind, Kind, Refusal, ToolId, catalogue, find};
 use novamind_world::params::Params;
 use novamind_world::settings::Settings;
 
-/// Largest factor of settings.
 const MOST_FACTOR: f64 = 1000.0;
 
-/// Something that is decided otherwise from a week on.
+/// An edit of decisions from the start of a week.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DecisionEdit {
-    /// The settings of a tool, those in force and those that are set later, times a factor from 0 to 1,000.
+    /// Multiplies the current and later settings of a tool by a factor from 0 to 1,000.
     Scale {
         /// The tool.
         tool: ToolId,
         /// The factor.
         factor: f64,
     },
-    /// No call of a tool is made: what it set stays as it is.
+    /// Omits all calls of a tool and keeps its current settings.
     Keep(ToolId),
-    /// A single call is not made, or a parameter is not set.
+    /// Omits one call or parameter change, by line.
     Drop(u64),
-    /// A single call is made with other arguments.
+    /// Changes the arguments of one call.
     Change {
-        /// Its line.
+        /// Line of the call.
         seq: u64,
-        /// The arguments.
+        /// New arguments.
         args: Value,
     },
-    /// A call is made besides, after those of its day.
+    /// Adds a call after those of its day.
     Add {
-        /// Week at whose start it is made, counted from 1; the first of the what-if if none is named.
+        /// Week at whose start the call is made, counted from 1; by default the first week of the what-if.
         week: Option<u32>,
         /// The tool.
         tool: ToolId,
         /// The arguments.
         args: Value,
     },
-    /// A parameter has another value from then on, after the calls of the day; in debug runs.
+    /// Sets a parameter after the calls of the day; debug runs only.
     Set {
-        /// Week from whose start on, counted from 1; the first of the what-if if none is named.
+        /// Week at whose start the parameter is set, counted from 1; by default the first week of the what-if.
         week: Option<u32>,
         /// Full key.
         key: String,
         /// The value.
         value: Value,
     },
-    /// No call sets the capacity; at the start of every week it is the smallest tier that covers the busiest day of the week
-    /// before.
+    /// Ignores calls that set the capacity. At the start of every week, sets the smallest tier that covers the busiest day of the
+    /// previous week.
     CapacityFollowsUsage,
 }
 
-/// What a what-if changes in days of a run that follow a moment.
+/// Converts decision edits to edits of the recorded steps after a day.
 ///
 /// # Errors
-/// `line_unknown`, `week_unknown`, `parameter_unknown`: it names what is not there; `parameter_not_allowed`; and
-/// `not_in_this_mode` where a parameter is set and the run is no debug run.
+/// `line_unknown`, `week_unknown` or `parameter_unknown` for an unknown name, `parameter_not_allowed`, and
+/// `not_in_this_mode` if a parameter is set outside a debug run.
 pub(super) fn edits(
     decided: &[DecisionEdit],
     opening: &Opening<'_>,
@@ -80,13 +79,13 @@ pub(super) fn edits(
     Ok(edits)
 }
 
-/// The company at the start of the week that a what-if begins with.
+/// The company at the start of the first week of a what-if.
 pub(super) struct Opening<'a> {
     pub day: u32,
     pub settings: &'a Settings,
     /// Parameters in force.
     pub params: &'a Params,
-    /// What the run is.
+    /// Mode of the run.
     pub mode: Mode,
 }
 
@@ -96,7 +95,7 @@ impl Opening<'_> {
         Opening { day: world.day, settings: &world.settings, params, mode }
     }
 
-    /// The day on which a week begins, in which something is decided besides.
+    /// Returns the first day of the week of an added decision.
     fn day_of(&self, week: Option<u32>, until: u32) -> Result<u32, Refusal> {
         let (from, days) = (self.day, self.params.run.days_per_week);
         let day = week.map_or(from, |week| week.saturating_sub(1).saturating_mul(days));
@@ -108,16 +107,18 @@ impl Opening<'_> {
         Err(Refusal::at("week", "week_unknown", message))
     }
 
-    /// Refuses a parameter that cannot be set.
+    /// Rejects a parameter that cannot be set.
     fn check_parameter(&self, key: &str, value: &Value) -> Result<(), Refusal> {
         refuse_outside_debug(self.mode)?;
         let in_force = self.params.value(key).map_err(unknown)?;
         let not_allowed = |problem| Refusal::at(key, "parameter_not_allowed", problem);
         if let (Value::String(word), false) = (value, in_force.is_str()) {
-            return Err(not_allowed(format!("{word} is no value of {key}, which is {in_force} now")));
+            return Err(not_allowed(format!(
+                "{word} is not a valid value of {key}, which is {in_force} now"
+            )));
         }
         let value =
-            value_of_json(value).ok_or_else(|| not_allowed(format!("{key} cannot be null, nor hold it")))?;
+            value_of_json(value).ok_or_else(|| not_allowed(format!("{key} cannot be or contain null")))?;
         self.params.with(key, value).map(drop).map_err(|error| not_allowed(error.problem))
     }
 }
@@ -166,7 +167,7 @@ fn calls(moves: &[Move]) -> impl Iterator<Item = &PastCall> {
     })
 }
 
-/// Lets the capacity follow usage, and makes no call that sets it.
+/// Lets the capacity follow usage and omits calls that set it.
 pub(super) fn let_capacity_follow(followed: FollowedUsage, edits: &mut Edits, moves: &[Move]) {
     drop_all(ToolId::SetCapacityTier, edits, moves);
     edits.capacity = Some(followed);
@@ -181,25 +182,26 @@ fn call_of(seq: u64, moves: &[Move]) -> Result<(), Refusal> {
     is_there.then_some(()).ok_or_else(|| no_line(seq))
 }
 
-/// A call, or a parameter that was set.
+/// Returns the recorded decision of a line.
 fn move_of(seq: u64, moves: &[Move]) -> Result<(), Refusal> {
     let is_it = |step: &Move| matches!(step, Move::Parameter(setting) if setting.change.seq == seq);
     if moves.iter().any(is_it) { Ok(()) } else { call_of(seq, moves) }
 }
 
 fn no_line(seq: u64) -> Refusal {
-    let message = format!("line {seq} is no decision of the weeks of this what-if; whatif WEEK lists them");
+    let message =
+        format!("line {seq} is not a decision in the weeks of this what-if; whatif WEEK lists the decisions");
     Refusal::at("line", "line_unknown", message)
 }
 
-/// Values in force are set anew before anything else; calls that set some are made with other numbers.
+/// Multiplies current settings by calls before all others, and changes the numbers of recorded calls.
 fn scale(tool: ToolId, factor: f64, edits: &mut Edits, opening: &Opening<'_>, moves: &[Move]) {
     let mut in_force = tool.tool().current(opening.settings);
     if tool == ToolId::SetPrices {
-        // A plan without a price stays without.
+        // A plan without a price keeps no price.
         in_force.retain(|_, price| price.as_f64() != Some(0.0));
     }
-    // What the run sets anew on that day anyway is scaled there.
+    // Settings that the run changes on that day are scaled in its own call.
     let is_set_anew = calls(moves)
         .filter(|call| call.tool == tool && call.day == opening.day)
         .any(|call| call.accepted && in_force.keys().all(|name| call.args.get(name).is_some()));
@@ -213,7 +215,7 @@ fn scale(tool: ToolId, factor: f64, edits: &mut Edits, opening: &Opening<'_>, mo
     }
 }
 
-/// Every number times a factor.
+/// Multiplies every number by a factor.
 fn scaled(value: &Value, factor: f64) -> Value {
     match value {
         Value::Number(number) => {
@@ -227,12 +229,12 @@ fn scaled(value: &Value, factor: f64) -> Value {
     }
 }
 
-/// Without the noise of binary fractions: to twelve digits.
+/// Rounds to twelve digits, which removes binary rounding errors.
 fn rounded(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
 
-/// Whether the arguments of a tool are amounts: numbers of which a multiple makes sense.
+/// Whether the arguments of a tool are amounts that can be multiplied by a factor.
 pub fn sets_amounts(tool: ToolId) -> bool {
     let spec = tool.spec();
     let is_amount = |kind: &ArgumentKind| {
@@ -263,7 +265,7 @@ impl Display for DecisionEdit {
     }
 }
 
-/// Forms of an edit, as help shows them.
+/// Example edits for help and error messages.
 pub const FORMS: [&str; 7] = [
     "set_prices * 0.9",
     "keep set_daily_spend",
@@ -282,7 +284,7 @@ impl FromStr for DecisionEdit {
         let (first, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
         let rest = rest.trim();
         match first {
-            "" => Err(format!("an edit is missing; for instance {}", FORMS.join(" or "))),
+            "" => Err(format!("an edit is missing; for example {}", FORMS.join(" or "))),
             "keep" => acting(rest).map(DecisionEdit::Keep),
             "drop" => line(rest).map(DecisionEdit::Drop),
             "change" => {
@@ -304,32 +306,32 @@ impl FromStr for DecisionEdit {
     }
 }
 
-/// `set_prices * 0.9`, or a call.
+/// Parses `set_prices * 0.9`, or a call.
 fn scale_or_call(text: &str) -> Result<DecisionEdit, String> {
     let name = text.split(|letter: char| letter.is_whitespace() || letter == '*').next().unwrap_or_default();
     let Some(factor) = text[name.len()..].trim_start().strip_prefix('*') else { return added(None, text) };
     let tool = acting(name)?;
     if !sets_amounts(tool) {
         let amounts: Vec<&str> = ToolId::all().filter(|own| sets_amounts(*own)).map(ToolId::name).collect();
-        return Err(format!("{name} sets no amounts; a factor goes with {}", amounts.join(", ")));
+        return Err(format!("{name} has no amounts; a factor works with {}", amounts.join(", ")));
     }
     let factor = factor.trim();
     let number = factor.parse().ok().filter(|number: &f64| (0.0..=MOST_FACTOR).contains(number));
     number.map(|factor| DecisionEdit::Scale { tool, factor }).ok_or_else(|| {
-        format!("{factor} is not a factor; write a number from 0 to {MOST_FACTOR}, for instance 0.9")
+        format!("{factor} is not a factor; enter a number from 0 to {MOST_FACTOR}, for example 0.9")
     })
 }
 
-/// `set KEY VALUE`, or a call.
+/// Parses `set KEY VALUE`, or a call.
 fn decided_besides(week: Option<u32>, text: &str) -> Result<DecisionEdit, String> {
     let Some(rest) = text.strip_prefix("set").filter(|rest| rest.starts_with(char::is_whitespace)) else {
         return added(week, text);
     };
     let (key, value) = rest.trim().split_once(char::is_whitespace).unwrap_or((rest.trim(), ""));
     match value.trim() {
-        "" => Err("set needs a parameter and its value, for instance set group.S1.c_max_mean 60".to_owned()),
+        "" => Err("set needs a parameter and a value, for example set group.S1.c_max_mean 60".to_owned()),
         value if value.contains(" from ") => Err(format!(
-            "a what-if sets a value from the start of a week on: in 24 set {key} VALUE, not {value}"
+            "a what-if sets a value at the start of a week: write in 24 set {key} VALUE instead of {value}"
         )),
         value => {
             let value = serde_json::from_str(value).unwrap_or_else(|_| Value::String(value.to_owned()));
@@ -344,12 +346,12 @@ fn added(week: Option<u32>, call: &str) -> Result<DecisionEdit, String> {
     Ok(DecisionEdit::Add { week, tool, args: arguments(rest, tool.spec().whole)? })
 }
 
-/// The tool of a name, if it can change the company.
+/// Parses the name of a tool that can change the company.
 fn acting(name: &str) -> Result<ToolId, String> {
     let Some(tool) = find(name) else {
         let near = catalogue::nearest(name);
         let help = match near.is_empty() {
-            true => format!("an edit reads {}", FORMS.join(" or ")),
+            true => format!("an edit has one of the forms {}", FORMS.join(" or ")),
             false => format!("did you mean {}?", near.join(" or ")),
         };
         return Err(format!("there is no tool {name}; {help}"));
@@ -357,16 +359,16 @@ fn acting(name: &str) -> Result<ToolId, String> {
     let spec = tool.spec();
     match spec.kind.acts() && spec.kind != Kind::Time {
         true => Ok(spec.id),
-        false => Err(format!("{name} changes nothing in the company")),
+        false => Err(format!("{name} does not change the company")),
     }
 }
 
 fn line(number: &str) -> Result<u64, String> {
     let number = number.trim();
-    number.parse().map_err(|_| format!("{number} is not the number of a line; for instance drop 57"))
+    number.parse().map_err(|_| format!("{number} is not a line number; for example drop 57"))
 }
 
-/// Arguments as JSON, or as `NAME=VALUE` separated by blanks.
+/// Parses arguments as JSON, or as `NAME=VALUE` separated by spaces.
 fn arguments(text: &str, whole: Option<&str>) -> Result<Value, String> {
     let text = text.trim();
     if text.starts_with('{') {
@@ -379,7 +381,7 @@ fn arguments(text: &str, whole: Option<&str>) -> Result<Value, String> {
     }
     let pair = |word: &str| {
         let (name, value) =
-            word.split_once('=').ok_or_else(|| format!("{word} is no argument; write NAME=VALUE"))?;
+            word.split_once('=').ok_or_else(|| format!("{word} is not an argument; write NAME=VALUE"))?;
         let value = serde_json::from_str(value).unwrap_or_else(|_| Value::String(value.to_owned()));
         Ok((name.to_owned(), value))
     };
@@ -427,20 +429,20 @@ mod tests {
             "there is no tool set_price; did you mean set_prices or set_promotion?"
         );
         assert!(
-            said("set_capacity_tier * 2").starts_with("set_capacity_tier sets no amounts; a factor goes")
+            said("set_capacity_tier * 2").starts_with("set_capacity_tier has no amounts; a factor works")
         );
         assert!(said("set_prices * much").starts_with("much is not a factor"));
         assert!(said("set_prices * -1").starts_with("-1 is not a factor"));
         assert!(said("set_prices * inf").starts_with("inf is not a factor"));
         assert!(said("set_prices * 1e308").starts_with("1e308 is not a factor"));
-        assert_eq!(said("keep get_vars"), "get_vars changes nothing in the company");
-        assert_eq!(said("next_week"), "next_week changes nothing in the company");
-        assert!(said("drop it").starts_with("it is not the number of a line"));
+        assert_eq!(said("keep get_vars"), "get_vars does not change the company");
+        assert_eq!(said("next_week"), "next_week does not change the company");
+        assert!(said("drop it").starts_with("it is not a line number"));
         assert_eq!(said("in x set_prices B=3"), "x is not the number of a week");
-        assert!(said("set group.S1.c_max_mean").starts_with("set needs a parameter and its value"));
+        assert!(said("set group.S1.c_max_mean").starts_with("set needs a parameter and a value"));
         assert!(said("set quality.base_product_quality 5 from 300").contains("in 24 set"));
         assert!(said("in 3 set").starts_with("there is no tool set"));
-        assert_eq!(said("set_prices B"), "B is no argument; write NAME=VALUE");
+        assert_eq!(said("set_prices B"), "B is not an argument; write NAME=VALUE");
         assert!(said("set_prices {B}").starts_with("the arguments are not JSON"));
     }
 

@@ -1,10 +1,9 @@
-//! Which figures branches are compared by.
+//! Figures by which branches are compared.
 
 use crate::counterfactual::branch::BranchOutcome;
 use novamind_record::figures::{FigureUnit, WeekFigures};
 use novamind_world::events::DayFigures;
 
-/// Days of which leavers are counted against those who were there before.
 const CHURN_DAYS: usize = 30;
 
 /// A figure at the end of a week.
@@ -16,9 +15,9 @@ pub enum BranchFigure {
     RecurringRevenue,
     /// Active subscriptions of individuals.
     Subscribers,
-    /// Seats of active companies.
+    /// Seats of active enterprises.
     Seats,
-    /// Individuals who left in the last 30 days, of those who were there before: a share; not a number without any.
+    /// Cancellations of individuals in the last 30 days, as a share of the subscribers before; NaN without subscribers.
     Churn,
     /// Leads of individuals in the week.
     Leads,
@@ -26,7 +25,7 @@ pub enum BranchFigure {
     NewSubscribers,
     /// Individuals who cancelled in the week.
     Cancellations,
-    /// Mean satisfaction of individuals, on its scale; hidden from a player whose run goes on.
+    /// Mean satisfaction of individuals; hidden from the player of an unfinished run.
     Satisfaction,
 }
 
@@ -34,7 +33,7 @@ pub enum BranchFigure {
 pub(super) type Values = [f64; BranchFigure::ALL.len()];
 
 impl BranchFigure {
-    /// All figures, in the order in which they are shown.
+    /// All figures in display order.
     pub const ALL: [BranchFigure; 9] = [
         BranchFigure::Cash,
         BranchFigure::RecurringRevenue,
@@ -47,7 +46,7 @@ impl BranchFigure {
         BranchFigure::Satisfaction,
     ];
 
-    /// Name in lists.
+    /// Returns the display name.
     pub fn name(self) -> &'static str {
         match self {
             BranchFigure::Cash => "cash",
@@ -62,12 +61,12 @@ impl BranchFigure {
         }
     }
 
-    /// Name in data.
+    /// Returns the name in data formats.
     pub fn id(self) -> String {
         self.name().replace(' ', "_")
     }
 
-    /// Unit of its values.
+    /// Returns the unit of the values.
     pub fn unit(self) -> FigureUnit {
         match self {
             BranchFigure::Cash | BranchFigure::RecurringRevenue => FigureUnit::Dollars,
@@ -77,13 +76,13 @@ impl BranchFigure {
         }
     }
 
-    /// Whether nobody may see it whose run goes on, outside of debug runs.
+    /// Whether the figure is hidden in unfinished runs, except debug runs.
     pub(super) fn is_hidden(self) -> bool {
         self == BranchFigure::Satisfaction
     }
 }
 
-/// The figures at the end of each week of a branch. `earlier` holds the days before its first.
+/// Returns the figures at the end of each week of a branch. `earlier` contains the days before its first day.
 pub(super) fn values(earlier: &[DayFigures], outcome: &BranchOutcome) -> Vec<Values> {
     let days: Vec<&DayFigures> = earlier.iter().chain(&outcome.days).collect();
     let churn = |last_day: u32| {

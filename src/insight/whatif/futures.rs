@@ -1,29 +1,29 @@
-//! Branches under luck that is redrawn: what may come, and how sure a difference is.
+//! Branches with redrawn random draws: the range of outcomes, and the certainty of differences.
 
 use super::figure::{BranchFigure, Values};
 use novamind_base::statistics::{PairedDifference, quantile_of_sorted};
 
-/// Branches under several futures, the same ones for each.
+/// Branches with several futures; all branches have the same futures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Futures {
-    /// How many futures were drawn.
+    /// Number of futures.
     pub count: u32,
-    /// Luck is the run's own up to this day.
+    /// Last day with the random draws of the run.
     pub redrawn_after: u32,
-    /// Last days of all weeks, from the day on which the branches part: whatever became of the futures.
+    /// Last day of each week from the start of the branches, including weeks after a bankruptcy.
     days: Vec<u32>,
     /// Figures by branch, future and week; a future that ended in bankruptcy has fewer weeks.
     branches: Vec<Vec<Vec<Values>>>,
 }
 
-/// A figure over several futures.
+/// The distribution of a figure over several futures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FutureBand {
-    /// Nine of ten futures have more.
+    /// 10th percentile.
     pub low: f64,
-    /// Half of them have more.
+    /// Median.
     pub median: f64,
-    /// One of ten has more.
+    /// 90th percentile.
     pub high: f64,
 }
 
@@ -33,7 +33,7 @@ impl Futures {
         Futures { count, redrawn_after, days, branches }
     }
 
-    /// A figure of a branch at the end of the week that a day closes; none where no future has a value there.
+    /// Returns a figure of a branch at the end of the week that ends on `day`, or `None` if no future has a value.
     pub fn band(&self, branch: usize, figure: BranchFigure, day: u32) -> Option<FutureBand> {
         let mut values: Vec<f64> =
             self.values(branch, figure, day).into_iter().filter(|value| !value.is_nan()).collect();
@@ -42,19 +42,19 @@ impl Futures {
         Some(FutureBand { low: at(0.1)?, median: at(0.5)?, high: at(0.9)? })
     }
 
-    /// The same at the end of every week: its last day and the band.
+    /// Returns a figure of a branch at the end of every week, as pairs of day and distribution.
     pub fn bands(&self, branch: usize, figure: BranchFigure) -> impl Iterator<Item = (u32, FutureBand)> {
         self.days.iter().filter_map(move |day| Some((*day, self.band(branch, figure, *day)?)))
     }
 
-    /// What a branch has more of a figure than the first one at the end of the week that a day closes; none where no future
-    /// has a value in both.
+    /// Returns the difference of a figure between a branch and the first one at the end of the week that ends on `day`, or `None`
+    /// if no future has a value in both.
     pub fn difference(&self, branch: usize, figure: BranchFigure, day: u32) -> Option<PairedDifference> {
         let pairs = self.values(branch, figure, day).into_iter().zip(self.values(0, figure, day));
         PairedDifference::of(pairs)
     }
 
-    /// Futures of a branch that end in bankruptcy: in the last week, or before it.
+    /// Returns the number of futures in which a branch ends in bankruptcy.
     pub fn bankrupt(&self, branch: usize) -> u32 {
         let own = self.branches.get(branch).into_iter().flatten();
         let is_broke =
@@ -62,7 +62,7 @@ impl Futures {
         own.filter(|weeks| weeks.len() < self.days.len() || is_broke(weeks)).count() as u32
     }
 
-    /// A figure in each future; not a number where it has none.
+    /// Returns a figure in each future, NaN if it has no value.
     fn values(&self, branch: usize, figure: BranchFigure, day: u32) -> Vec<f64> {
         let week = self.days.iter().position(|own| *own == day);
         let value = |weeks: &Vec<Values>| match (week, weeks.last()) {
@@ -74,7 +74,7 @@ impl Futures {
     }
 }
 
-/// A figure of a future that has ended: cash stays what it was, and there is nobody left to be counted.
+/// Returns a figure of a future after its bankruptcy: cash stays, counts are 0, churn and satisfaction are NaN.
 fn after_the_end(figure: BranchFigure, last: &Values) -> f64 {
     match figure {
         BranchFigure::Cash => last[figure as usize],

@@ -1,4 +1,4 @@
-//! The tree of branches of a run: where each left, what was changed first, where it stands now.
+//! The tree of related runs: the start of each branch, its first different decision, and its current state.
 
 use std::path::Path;
 
@@ -14,46 +14,46 @@ use novamind_session::week_of;
 /// A run in the tree.
 #[derive(Debug, Clone)]
 pub struct Kin {
-    /// The run as it stands.
+    /// Current state of the run.
     pub run: RunSummary,
-    /// How many branches lie between it and the run at the root: 0 for that one.
+    /// Number of branches between the run and the root; 0 for the root.
     pub depth: usize,
-    /// Week at whose start it left its parent; none for the root.
+    /// Week at whose start the branch begins; `None` for the root.
     pub left_in_week: Option<u32>,
-    /// The first decision that it, or its parent, made alone; none if there is none.
+    /// First decision that only the branch or only its parent made.
     pub first_change: Option<FirstChange>,
 }
 
-/// Where a branch came from.
+/// The origin of a branch.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct BranchOrigin {
-    /// The run that it left.
+    /// The parent run.
     pub run: String,
-    /// Week at whose start it left.
+    /// Week at whose start the branch begins.
     pub week: u32,
-    /// The first decision that it, or its parent, made alone; none if there is none, or if the parent cannot be read.
+    /// First decision that only the branch or only its parent made; also `None` if the parent cannot be read.
     pub first_change: Option<FirstChange>,
 }
 
-/// A decision by which a branch first parted from its parent.
+/// The first decision that differs between a branch and its parent.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct FirstChange {
     /// Decision day.
     pub day: u32,
     /// Tool, or parameter.
     pub what: String,
-    /// Whether the parent decided it, and the branch leaves it out.
+    /// Whether the parent made the decision and the branch did not.
     pub is_left_out: bool,
 }
 
-/// Where the run in a folder came from; none if it is no branch, or cannot be read.
+/// Returns the origin of the run in a folder, or `None` if the run is not a branch or cannot be read.
 pub fn origin_of(folder: &Path) -> Option<BranchOrigin> {
     let parent = manifest_of(folder).ok()?.parent?;
     let (week, first_change) = parting(folder, &parent)?;
     Some(BranchOrigin { run: parent.run, week, first_change })
 }
 
-/// Week in which the run in a folder left its parent, and the first decision that only one of them made.
+/// Returns the week in which the run in a folder branched, and the first decision that only one of both runs made.
 fn parting(folder: &Path, parent: &Parent) -> Option<(u32, Option<FirstChange>)> {
     let lines = |folder: &Path| Some(Trajectory::read(&folder.join("trajectory.jsonl")).ok()?.lines);
     let own = lines(folder)?;
@@ -64,8 +64,7 @@ fn parting(folder: &Path, parent: &Parent) -> Option<(u32, Option<FirstChange>)>
     Some((week, change))
 }
 
-/// The first decision of a branch that its parent did not make on that day, or the other way round, until the day to which both
-/// have come.
+/// Returns the first decision that only one of branch and parent made on its day, up to the last day that both have reached.
 fn first_change(own: &[Line], parents: &[Line], left_at: u64) -> Option<FirstChange> {
     let one = |line: &Line| decision(line).map(|(what, how)| (line.day, what.to_owned(), how));
     let mine: Vec<_> = own.iter().filter_map(one).collect();
@@ -77,7 +76,7 @@ fn first_change(own: &[Line], parents: &[Line], left_at: u64) -> Option<FirstCha
         is_left_out,
     };
     let new = mine.iter().find(|one| !theirs.contains(one)).map(|one| of(one, false));
-    // On the day to which the branch has come it still can be decided.
+    // The current day of the branch is still open for decisions.
     let left_out = theirs.iter().find(|one| one.0 < until && !mine.contains(one)).map(|one| of(one, true));
     match (new, left_out) {
         (Some(new), Some(left_out)) if left_out.day < new.day => Some(left_out),
@@ -85,7 +84,7 @@ fn first_change(own: &[Line], parents: &[Line], left_at: u64) -> Option<FirstCha
     }
 }
 
-/// What a line decides: tool or parameter, with arguments or value.
+/// Returns the decision of an event: tool or parameter, with arguments or value.
 fn decision(line: &Line) -> Option<(&str, Value)> {
     if let Record::Override(setting) = &line.record {
         return Some((&setting.key, setting.new.clone()));
@@ -94,10 +93,9 @@ fn decision(line: &Line) -> Option<(&str, Value)> {
     call.tool.known()?.spec().kind.acts().then(|| (call.tool.name(), call.args.clone()))
 }
 
-/// The tree in which a run of a folder of runs stands, its root first, each run before its branches. Runs that cannot be read
-/// are left out.
+/// Returns the tree of a run in a folder of runs, in pre-order from the root. Unreadable runs are omitted.
 pub fn branches_of(runs: &Path, id: &str) -> Vec<Kin> {
-    // A copy of a folder is the same run once more.
+    // A copied folder contains the same run.
     let once = list_runs(runs).into_iter().flatten().filter(|run| run.copy_of.is_none());
     let all: Vec<Node> = once.filter_map(|run| node(runs, run)).collect();
     let parent_of = |id: &str| {
@@ -106,7 +104,7 @@ pub fn branches_of(runs: &Path, id: &str) -> Vec<Kin> {
         all.iter().any(|node| node.run.id == parent.run).then(|| parent.run.clone())
     };
     let mut root = id.to_owned();
-    // A chain of parents is no longer than there are runs, whatever the files say.
+    // Limits the chain of parents, because damaged files could contain a cycle.
     for _ in 0..all.len() {
         match parent_of(&root) {
             Some(parent) => root = parent,

@@ -1,5 +1,4 @@
-//! What a lesson keeps from a what-if while it goes on: answers before its question is answered, as weeks wait for it, and calls
-//! of tools that it does not have.
+//! Restrictions of a what-if in an unfinished lesson: no results before the guess, and no calls of unavailable tools.
 
 use std::path::Path;
 
@@ -11,7 +10,7 @@ use novamind_record::trajectory::Trajectory;
 use novamind_session::not_readable;
 use novamind_tools::{Refusal, ToolId};
 
-/// Where the student of an unfinished lesson stands, and whether the lesson of a run, over or not, moves the capacity by itself.
+/// Returns the student's standing in an unfinished lesson, and whether the lesson of the run changes the capacity automatically.
 ///
 /// # Errors
 /// `not_readable`.
@@ -28,7 +27,7 @@ pub(super) fn lesson_of(folder: &Path, past: &Past) -> Result<(Option<LessonStan
     Ok((Some(LessonStanding::of(lesson.into(), part, &trajectory.lines)), moves_capacity))
 }
 
-/// Refuses to decide otherwise what the student could not decide.
+/// Rejects edits of decisions that the student could not make.
 ///
 /// # Errors
 /// `not_in_this_lesson`.
@@ -40,7 +39,7 @@ pub(crate) fn refuse_locked(
     decided.iter().filter_map(|edit| tool_of(edit, moves)).try_for_each(|tool| standing.refuse_tool(tool))
 }
 
-/// The tool whose calls an edit makes, changes or leaves out.
+/// Returns the tool whose calls an edit adds, changes or removes.
 fn tool_of(edit: &DecisionEdit, moves: &[Move]) -> Option<ToolId> {
     let called = |seq: u64| {
         moves.iter().find_map(|step| match step {

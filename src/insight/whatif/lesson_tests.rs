@@ -1,4 +1,4 @@
-//! A what-if in a lesson goes on as the lesson does: its capacity moves by itself, and its step is the last that is told.
+//! A what-if in a lesson changes the capacity automatically and ends with the step.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -12,7 +12,7 @@ use novamind_record::trajectory::record::Via;
 use novamind_session::engine::UsageRule;
 use novamind_session::{LessonEntry, NewRun, Storage};
 
-/// A company that grows out of its servers; what moves them is the lesson.
+/// Starts a company that outgrows its servers in a lesson that changes the capacity.
 const PLAN: &str = r#"
 title = "More and more"
 minutes = 5

@@ -1,7 +1,7 @@
-//! What if: days of a run simulated again with other decisions, the rest of the decisions kept.
+//! What-if: re-simulates days of a run with some decisions changed and all others kept.
 //!
-//! Branches share the run's luck, so whatever an edit does not touch stays as it was, and a difference is worth exactly what
-//! the edit did. The future can be redrawn as well: then each branch meets the same futures.
+//! Branches have the random draws of the run, so a difference is exactly the effect of the edit. Futures can be redrawn as well;
+//! then all branches have the same futures.
 
 mod adopt;
 mod comparison;
@@ -44,33 +44,32 @@ use novamind_session::{Look, Session, not_readable};
 use novamind_tools::{Refusal, highest_named};
 use novamind_world::events::DayFigures;
 
-/// Alternatives that stand side by side, at most.
+/// Maximum number of alternatives in one comparison.
 pub const MOST_ALTERNATIVES: usize = 3;
-/// Weeks that are simulated at least, as far as the run has them.
+/// Minimum number of simulated weeks, limited by the last week of the run.
 const LEAST_WEEKS: u32 = 12;
-/// Weeks before the branches part whose days are read for figures that look back.
+/// Weeks before the start of the branches that figures over past days use.
 const WEEKS_BACK: u32 = 5;
 
-/// What is told of progress: days simulated, and how many there will be. It can stop the work.
+/// Receives the number of simulated days and the total. Can stop the work.
 pub type OnWhatIfProgress<'a> = &'a (dyn Fn(usize, usize) -> ControlFlow<()> + Sync);
 
-/// Answers what would have been if something else had been decided in a run.
+/// Compares a run with branches in which decisions are changed.
 pub struct WhatIf {
     folder: PathBuf,
     past: Past,
     sight: Sight,
-    /// The look is recorded: what is hidden from a player of an unfinished run is told.
+    /// Whether the inspection is recorded, so that hidden figures may be shown.
     tells_hidden: bool,
-    /// The unfinished lesson that the run belongs to.
+    /// The unfinished lesson of the run, if any.
     lesson: Option<LessonStanding>,
-    /// The lesson of the run moves the capacity by itself: it does so in every branch.
+    /// Whether the lesson of the run changes the capacity automatically, as in every branch.
     moves_capacity: bool,
 }
 
-/// Days of a run from which branches part.
+/// The recorded days after the start of the branches.
 struct Parting {
     start: Arc<KeptState>,
-    /// Days before it.
     earlier: Vec<DayFigures>,
     moves: Vec<Move>,
     until: u32,
@@ -94,26 +93,26 @@ impl OfRecord for WhatIf {
     }
 }
 
-/// Records that a what-if from a week shows true satisfaction, where the run may be looked into. False where it may not, or
-/// where nothing writes the line: then the what-if is told without.
+/// Records an inspection for a what-if that shows true satisfaction. Returns `false` if the run may not be inspected or the event
+/// cannot be written; then the what-if omits the figure.
 pub fn look_at_what_if(run: &mut Session, week: u32) -> bool {
     let day = run.day();
     Look::begin_at(run, "whatif", &format!("from {week}"), day).is_ok()
 }
 
 impl WhatIf {
-    /// Tells from now on what is hidden from a player of an unfinished run, or leaves it out: whether the look is a line.
+    /// Sets whether hidden figures are shown, which requires a recorded inspection.
     pub fn tell_hidden(&mut self, is_recorded: bool) {
         self.tells_hidden = is_recorded;
     }
 
-    /// Waits for the question of a lesson, as weeks do.
+    /// Rejects the what-if while the question of a lesson is open.
     fn refuse_before_guess(&self) -> Result<(), Refusal> {
         let weeks = self.past.last_day() / self.past.days_per_week();
         self.lesson.as_ref().map_or(Ok(()), |lesson| lesson.refuse_before_guess(weeks))
     }
 
-    /// What each branch decides and how its days are edited for it, if the player may decide it. None if it was stopped.
+    /// Returns the edits of each branch after checking that the player may make them, or `None` if stopped.
     fn all_edits(
         &mut self,
         alternatives: &[Vec<DecisionEdit>],
@@ -140,8 +139,8 @@ impl WhatIf {
         Ok(Some((all, edits)))
     }
 
-    /// Lets the lesson move the capacity: in the run as it was from the last recorded day on, and everywhere where something is
-    /// decided otherwise, unless that is another rule.
+    /// Applies the capacity rule of the lesson: in the unchanged run after the last recorded day, and in every edited branch that
+    /// has no other rule.
     fn move_capacity_as_lesson(&self, edits: &mut Edits, decided: &[DecisionEdit], parting: &Parting) {
         let rule = UsageRule::StepByStep;
         match (decided.is_empty(), edits.capacity) {
@@ -154,7 +153,7 @@ impl WhatIf {
         }
     }
 
-    /// The calls of the run from a week on: what can be decided otherwise.
+    /// Returns the decisions of the run from the start of a week, which edits can change.
     ///
     /// # Errors
     /// `week_unknown`, and `guess_first` while the question of a lesson is open.
@@ -162,14 +161,14 @@ impl WhatIf {
         self.refuse_before_guess()?;
         let from = self.day_of(week)?;
         let moves = self.past.between(from, self.past.manifest.days);
-        // What a lesson sets by itself is no decision of the student's.
+        // Automatic settings of a lesson are not decisions of the student.
         let sets_parameters = self.past.manifest.mode == Mode::Debug;
         let decided = moves.iter().filter_map(PastDecision::of);
         Ok(decided.filter(|own| sets_parameters || matches!(own, PastDecision::Call(_))).collect())
     }
 
-    /// The branches of [`WhatIf::compare`], and those of [`WhatIf::futures`] where a number of futures is asked for. None if it
-    /// was stopped.
+    /// Returns the branches of [`WhatIf::compare`], and those of [`WhatIf::futures`] if a number of futures is given. Returns `None`
+    /// if stopped.
     ///
     /// # Errors
     /// As for [`WhatIf::compare`].
@@ -188,12 +187,12 @@ impl WhatIf {
         Ok(drawn.map(|drawn| (compared, Some(drawn))))
     }
 
-    /// The run as it was and up to three alternatives, from the start of a week to the end of another, or, if none is named,
-    /// of the last one recorded, for twelve weeks at least. None if it was stopped.
+    /// Compares the unchanged run and up to three alternatives, from the start of a week to the end of another. By default the last
+    /// week is the last recorded one, but at least twelve weeks are simulated. Returns `None` if stopped.
     ///
     /// # Errors
     /// `week_unknown`, `line_unknown`, `too_many_alternatives`, `too_many_leads`, `not_readable`; in an unfinished lesson
-    /// `guess_first` while its question is open, and `not_in_this_lesson` for a tool that it does not have.
+    /// `guess_first` while its question is open, and `not_in_this_lesson` for an unavailable tool.
     pub fn compare(
         &mut self,
         week: u32,
@@ -239,8 +238,8 @@ impl WhatIf {
         }))
     }
 
-    /// The same under futures of which the luck is drawn anew: from the last recorded day on if the branches go beyond it, else
-    /// from the day on which they part. None if it was stopped.
+    /// Compares the branches with redrawn futures. Random draws are redrawn after the last recorded day if the branches continue
+    /// beyond it, otherwise from the start of the branches. Returns `None` if stopped.
     ///
     /// # Errors
     /// As for [`WhatIf::compare`].
@@ -282,12 +281,12 @@ impl WhatIf {
         Ok(Some(Futures::of(after, days, branches)))
     }
 
-    /// Days of a week of the run.
+    /// Returns the number of days per week of the run.
     pub fn days_per_week(&self) -> u32 {
         self.past.days_per_week()
     }
 
-    /// Day on which a week begins, if days of the record end on it.
+    /// Returns the day on which a week starts, if recorded days end on it.
     fn day_of(&self, week: u32) -> Result<u32, Refusal> {
         let days = self.past.days_per_week();
         let day = week.checked_sub(1).map(|earlier| earlier.saturating_mul(days));
@@ -296,14 +295,14 @@ impl WhatIf {
             Some(day) if week <= last && self.past.ends_on(day) => Ok(day),
             _ => {
                 let message =
-                    format!("a what-if cannot begin with week {week}; choose a week from 1 to {last}");
+                    format!("a what-if cannot start with week {week}; choose a week from 1 to {last}");
                 Err(Refusal::at("week", "week_unknown", message))
             }
         }
     }
 
-    /// The last day that is simulated, and what ends with it. In an unfinished lesson that is its step: the next one may ask for
-    /// what comes of it.
+    /// Returns the last day that can be simulated, and a name for its end. In an unfinished lesson it is the end of the step, because
+    /// the next step can ask for the outcome.
     fn horizon(&self) -> (u32, &'static str) {
         let (days, last) = (self.past.days_per_week(), self.past.manifest.days);
         let step_end = self.lesson.as_ref().and_then(|lesson| {
@@ -336,7 +335,7 @@ impl WhatIf {
                 let message = format!("a what-if from week {week} cannot end with week {last}");
                 return Err(Refusal::at("until", "week_unknown", message));
             }
-            // A record can stop inside a week; figures are those of whole ones.
+            // A record can end within a week, but figures need complete weeks.
             None => {
                 let last_end = self.past.last_day().div_ceil(days) * days;
                 last_end.max(from + LEAST_WEEKS * days).min(horizon)
@@ -358,14 +357,14 @@ impl WhatIf {
 }
 
 impl Parting {
-    /// The last days of its weeks.
+    /// Returns the last day of each week.
     fn week_ends(&self, days_per_week: u32) -> Vec<u32> {
         let from = self.start.world.day;
         let weeks = (self.until - from).div_ceil(days_per_week);
         (1..=weeks).map(|week| (from + week * days_per_week).min(self.until)).collect()
     }
 
-    /// The week before the branches part, as far as usage goes.
+    /// Returns the usage of the week before the branches start.
     fn week_before(&self, days_per_week: u32) -> Option<WeekFigures> {
         let from = self.earlier.len().checked_sub(days_per_week as usize)?;
         let mut week = WeekFigures::default();
@@ -373,8 +372,8 @@ impl Parting {
         Some(week)
     }
 
-    /// The last day of the run on which a call names a customer who came after the branches part; such customers have other
-    /// numbers in a branch into which more or fewer came.
+    /// Returns the last day on which a call names a customer who came after the start of the branches. Such customers have other
+    /// numbers in a branch with more or fewer customers.
     fn last_meeting(&self, edits: &[Edits]) -> Option<u32> {
         let first_new = self.start.world.customers.next_customer;
         let is_met = |tool, args| highest_named(tool, args) >= Some(first_new);
@@ -391,10 +390,10 @@ impl Parting {
         kept.chain(changed.map(|call| call.day)).chain(added.map(|call| call.day)).max()
     }
 
-    /// Simulates the days under each of some edits. None if it was stopped.
+    /// Simulates the days with each of several edits. Returns `None` if stopped.
     ///
     /// # Errors
-    /// `too_many_leads`: one of them leads to a day that no memory holds.
+    /// `too_many_leads` if a day of a branch exceeds the limits of memory.
     fn simulate(
         &self,
         edits: &[Edits],
@@ -421,8 +420,8 @@ impl Parting {
     }
 }
 
-/// The last day on which two branches can have become different companies: the first one of which they have other figures, or
-/// the end; none where they have the same all the way.
+/// Returns the latest possible first day on which two branches differ: the end of the first week with different figures, or
+/// `None` if all figures are equal.
 fn differs_by(one: &BranchOutcome, other: &BranchOutcome) -> Option<u32> {
     let other_figures = one.days.iter().zip(&other.days).find(|(own, their)| own != their);
     if let Some((day, _)) = other_figures {
@@ -432,12 +431,12 @@ fn differs_by(one: &BranchOutcome, other: &BranchOutcome) -> Option<u32> {
     (one.day != other.day || one.part_hashes() != other.part_hashes()).then_some(one.day.max(other.day))
 }
 
-/// What each branch decides, the run as it was first, and how its days are edited for it.
+/// The decision edits of each branch, the unchanged run first, and the resulting edits of recorded steps.
 type AllEdits = (Vec<Vec<DecisionEdit>>, Vec<Edits>);
 
 fn all_edits(alternatives: &[Vec<DecisionEdit>], parting: &Parting, mode: Mode) -> Result<AllEdits, Refusal> {
     if alternatives.len() > MOST_ALTERNATIVES {
-        let message = format!("at most {MOST_ALTERNATIVES} alternatives stand side by side");
+        let message = format!("a what-if compares at most {MOST_ALTERNATIVES} alternatives");
         return Err(Refusal::new("too_many_alternatives", message));
     }
     let Parting { start, moves, until, .. } = parting;

@@ -1,4 +1,4 @@
-//! Branches lead where a run with those decisions leads; futures share their luck; what is hidden stays hidden.
+//! Branches equal runs with the same decisions; futures share their random draws; hidden state stays hidden.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -35,7 +35,7 @@ fn compared(session: &Session, week: u32, alternatives: &[&[&str]]) -> BranchCom
     compared.expect("an answer").expect("it is not stopped")
 }
 
-/// A run that decides something in weeks 1, 5 and 8, and asks for a project twice.
+/// Plays a run with decisions in weeks 1, 5 and 8, and starts a project twice.
 fn run(runs: &Path, mode: Mode) -> Session {
     let mut session = played(runs, mode, 3, Some(("set_prices", json!({"B": 30}))));
     session.call("start_research_project", &json!({"tier": 1}), Via::Plain).expect("a project");
@@ -57,7 +57,7 @@ fn the_run_as_it_was_is_the_run() {
     let curve =
         |branch: &BranchFigures| branch.curve(BranchFigure::Cash).map(|(_, cash)| cash).collect::<Vec<_>>();
     assert_eq!(curve(was), cash);
-    // Nothing was set in those weeks, so keeping it changes nothing.
+    // These weeks have no changed settings, so keeping them changes nothing.
     assert_eq!((curve(same), same.differs_on, same.differences.len()), (cash, None, 0));
     let left = was.value(BranchFigure::Churn, session.day()).expect("a value");
     let days = session.weeks().len();
@@ -144,11 +144,11 @@ fn futures_are_the_same_for_every_branch_and_for_every_question() {
     let futures = asked(&mut own);
     assert_eq!((futures.count, futures.redrawn_after), (5, session.day()));
     assert_eq!(asked(&mut own), futures);
-    // Nobody decides anything after the record, so keeping it is no other branch.
+    // There are no decisions after the record, so keeping the settings changes nothing.
     let difference = |branch, figure| futures.difference(branch, figure, 91).expect("pairs");
     let same = difference(2, BranchFigure::Cash);
     assert_eq!((same.mean, same.interval, same.more), (0.0, None, 0), "five are too few for an interval");
-    // At lower prices more stay, whatever the luck.
+    // Lower prices retain more subscribers in every future.
     let fewer = difference(1, BranchFigure::Cancellations);
     assert!(fewer.mean < 0.0 && fewer.more == 0, "{fewer:?}");
     let band = futures.band(0, BranchFigure::Leads, 91).expect("a band");
@@ -299,7 +299,7 @@ fn a_parameter_is_set_as_a_run_sets_it() {
     let runs = tempfile::tempdir().expect("a folder");
     let session = run(runs.path(), Mode::Debug);
     let alternative = &["set group.S1.c_max_mean 200", "in 7 set satisfaction.satisfaction_ema_alpha 0.9"];
-    // What a run becomes in which the same is set by hand.
+    // A branch in which the same parameters are set manually.
     let mut by_hand = session.branch(5, Mode::Debug).expect("a branch");
     let recorded: Vec<_> = of(&session).decisions(5).expect("decisions");
     for week in 5..=session.day() / 7 {
@@ -336,7 +336,7 @@ fn a_parameter_is_set_as_a_run_sets_it() {
     );
     let adopted = adopted(&session, 5, alternative);
     assert_eq!(adopted.state_hash(), by_hand.state_hash());
-    // What a branch has set can be left out of its own branches.
+    // Branches of a branch can omit its parameter changes.
     let lines =
         Trajectory::read(&adopted.folder().expect("a folder").join("trajectory.jsonl")).expect("lines").lines;
     let set: Vec<String> = lines
@@ -379,7 +379,7 @@ fn days_that_were_run_one_by_one_are_adopted_too() {
     assert_eq!((same.day(), same.state_hash()), (session.day(), session.state_hash()));
 }
 
-/// A run that answers every company that waits, each week.
+/// Plays a run that answers every waiting enterprise each week.
 fn run_with_offers(runs: &Path) -> Session {
     let ads = json!({"E1": 4000, "E2": 4000, "E3": 4000});
     let mut session = played(runs, Mode::Debug, 3, None);
@@ -402,7 +402,7 @@ fn run_with_offers(runs: &Path) -> Session {
     session
 }
 
-/// The companies to which a run made offers: day, group and running number in it; and under which numbers.
+/// Returns the enterprises with offers as day, group and number in the group, and their customer numbers.
 fn offers(session: &Session) -> (Vec<(u32, Group, u32)>, Vec<u32>) {
     let numbers = session.company().customer_numbers();
     let path = session.folder().expect("a folder").join("trajectory.jsonl");
@@ -439,8 +439,9 @@ fn offers_reach_the_same_companies_where_more_or_fewer_leads_come() {
         let Adopted { session: branch, refused } = adopted.expect("a branch");
         let (reached, under) = offers(&branch);
         assert_ne!(under, numbers, "{alternative}");
-        let is_absent =
-            |(_, _, refusal): &(u32, String, Refusal)| refusal.message.contains("has not come here");
+        let is_absent = |(_, _, refusal): &(u32, String, Refusal)| {
+            refusal.message.contains("does not exist in this branch")
+        };
         let absent = refused.iter().filter(|refused| is_absent(refused)).count();
         assert_eq!(own.refused.iter().filter(|refused| is_absent(refused)).count(), absent, "{alternative}");
         assert_eq!(absent == 0, all_come, "{alternative}: {absent}");

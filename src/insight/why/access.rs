@@ -1,4 +1,4 @@
-//! Who may see causes. They are simulated with the hidden state, so they tell of it.
+//! Permissions for causes, which reveal hidden state because it is part of their simulation.
 
 use super::quantity::WeekQuantity;
 use novamind_record::folder::manifest::Manifest;
@@ -6,24 +6,24 @@ use novamind_record::mode::Mode;
 use novamind_tools::Refusal;
 use novamind_world::identifiers::Group;
 
-/// How finely the inputs of the world are told apart.
+/// The level of detail of world inputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Sight {
-    /// The market is one cause: what moves it is hidden.
+    /// The market is a single cause, because its inputs are hidden.
     Market,
-    /// Every input for itself.
+    /// Every input is a separate cause.
     All,
 }
 
-/// What may be seen of a run.
+/// Returns the level of detail that a run permits.
 ///
 /// # Errors
-/// `not_in_this_mode` for an unfinished baseline run, and for one of which its study shows no results.
+/// `not_in_this_mode` for an unfinished baseline run, and for a run whose study shows no results.
 pub(crate) fn sight(manifest: &Manifest, ended: bool) -> Result<Sight, Refusal> {
     match (manifest.mode, ended) {
         (Mode::Baseline, true) if manifest.session_rules().hides_results() => Err(Refusal::new(
             "not_in_this_mode",
-            "the study of this run shows no results of it to its player",
+            "the study of this run does not show results to participants",
         )),
         (_, true) | (Mode::Debug, _) => Ok(Sight::All),
         (Mode::Sandbox | Mode::Lesson, false) => Ok(Sight::Market),
@@ -35,7 +35,7 @@ pub(crate) fn sight(manifest: &Manifest, ended: bool) -> Result<Sight, Refusal> 
     }
 }
 
-/// Refuses a figure that no screen shows while the run goes on.
+/// Rejects a figure that is hidden in unfinished runs.
 ///
 /// # Errors
 /// `not_in_this_mode`.
@@ -44,15 +44,15 @@ pub(super) fn refuse_hidden(quantity: WeekQuantity, sight: Sight) -> Result<(), 
         return Ok(());
     }
     let message = format!(
-        "{} is hidden while the run goes on; why explains it in debug runs and in runs that are over",
+        "{} is hidden in unfinished runs; why explains it in debug runs and finished runs",
         quantity.name()
     );
     Err(Refusal::at("figure", "not_in_this_mode", message))
 }
 
-/// A player has no figures of a group that was not known.
+/// Returns the rejection for a group that the player did not know.
 pub(super) fn unknown_group(group: Group, week: u32) -> Refusal {
-    let message = format!("{group} was not known in week {week}; choose a group that was");
+    let message = format!("{group} was not discovered in week {week}; choose a discovered group");
     Refusal::at("figure", "unknown_group", message)
 }
 

@@ -1,4 +1,4 @@
-//! What can have changed a figure, and by how much it changed itself.
+//! Causes of a change, and their values in the two weeks.
 
 use novamind_session::Change;
 use novamind_tools::ToolId;
@@ -8,19 +8,19 @@ use novamind_tools::ToolId;
 pub enum Cause {
     /// Calls of a tool.
     Calls(ToolId),
-    /// Parameters that were set in a debug run.
+    /// Parameter changes of a debug run.
     Parameters,
-    /// Several tools whose calls did least.
+    /// Several tools with the smallest contributions.
     OtherCalls,
-    /// What was bought in the week before, and was paid then.
+    /// One-time purchases that were paid in the week before.
     EarlierPurchases,
-    /// Everything about the market that the player cannot see.
+    /// All market inputs that are hidden from the player.
     Market,
-    /// Moves of rivals.
+    /// Competitor moves.
     Rivals,
     /// Drift of expectations and budgets.
     Drift,
-    /// What channels bring.
+    /// Channel yields.
     Yields,
     /// The economy.
     Economy,
@@ -28,14 +28,14 @@ pub enum Cause {
     Surges,
     /// The day of the month.
     Calendar,
-    /// Load of the service, and luck with outages.
+    /// Utilization, and outage draws.
     Service,
-    /// Several inputs that did least.
+    /// Several inputs with the smallest contributions.
     OtherInputs,
 }
 
 impl Cause {
-    /// Name in lists.
+    /// Returns the display name.
     pub fn name(self) -> &'static str {
         match self {
             Cause::Calls(tool) => name_of_calls(tool),
@@ -54,7 +54,7 @@ impl Cause {
         }
     }
 
-    /// Whether it is something the player decided.
+    /// Whether the cause is a decision of the player.
     pub fn is_own(self) -> bool {
         matches!(self, Cause::Calls(_) | Cause::Parameters | Cause::OtherCalls | Cause::EarlierPurchases)
     }
@@ -83,26 +83,26 @@ fn name_of_calls(tool: ToolId) -> &'static str {
     }
 }
 
-/// What differs about a cause from the week before.
+/// A difference in a cause between the two weeks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Detail {
     /// A setting.
     Setting(Change),
     /// An input of the world.
     Input(InputDetail),
-    /// Something happened so many times; its noun.
+    /// A number of occurrences, with the noun.
     Happened(usize, &'static str),
 }
 
 /// An input of the world in two weeks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InputDetail {
-    /// What it is.
+    /// Name of the input.
     pub name: &'static str,
-    /// The week before.
+    /// Value in the week before.
     pub old: f64,
-    /// The week.
+    /// Value in the week.
     pub new: f64,
-    /// Whether it is a share.
+    /// Whether the value is a share.
     pub is_share: bool,
 }

@@ -1,4 +1,4 @@
-//! Inputs of the world that differ between two weeks, and how each is held.
+//! World inputs that differ between two weeks, and their fixed values.
 
 use super::cause::{Cause, Detail, InputDetail};
 use crate::counterfactual::branch::BranchOutcome;
@@ -8,7 +8,7 @@ use novamind_world::held::Held;
 use novamind_world::market::surges::surge_factor;
 use novamind_world::product::service::HeldService;
 
-/// Two weeks that follow each other, as they were: the moment between them, and what came of each.
+/// Two consecutive recorded weeks: the state between them, and the results of both.
 pub(super) struct TwoWeeks<'a> {
     pub between: &'a KeptState,
     pub before: &'a BranchOutcome,
@@ -20,7 +20,7 @@ impl TwoWeeks<'_> {
         self.between.world.day + 1..=self.after.end.world.day
     }
 
-    /// Factor of demand surges on the days of the week and on those a week before.
+    /// Returns the demand surge factor on the days of the week and of the week before.
     fn surges(&self) -> (Vec<f64>, Vec<f64>) {
         let start = self.between.params.fidelity.surge_start;
         let factor = |day, moment: &KeptState| surge_factor(day, &moment.world.market.surges, start);
@@ -29,7 +29,7 @@ impl TwoWeeks<'_> {
         (now, self.days().map(|day| factor(day - week, self.between)).collect())
     }
 
-    /// Factor of the day of the month, the same way.
+    /// Returns the day-of-month factor on the days of the week and of the week before.
     fn month_days(&self) -> (Vec<f64>, Vec<f64>) {
         let calendar = &self.between.params.calendar.monthly;
         let factor = |day: u32| calendar[day as usize % calendar.len()];
@@ -37,7 +37,6 @@ impl TwoWeeks<'_> {
         (self.days().map(factor).collect(), self.days().map(|day| factor(day - week)).collect())
     }
 
-    /// The inputs that differ, each with what differs about it.
     pub(super) fn differing(&self) -> Vec<(Cause, Vec<Detail>)> {
         let (eve, end) = (&self.between.world.market, &self.after.end.world.market);
         let mut found = Vec::new();
@@ -72,7 +71,7 @@ impl TwoWeeks<'_> {
         found
     }
 
-    /// Holds some inputs at what they were a week before; load of the service against days with the player's changes undone.
+    /// Fixes inputs at their values of the week before. Utilization is relative to days without the player's changes.
     pub(super) fn held(&self, causes: impl Iterator<Item = Cause>, undone: &[DayFigures]) -> Held {
         let mut held = Held { from: self.between.world.day + 1, ..Held::default() };
         for cause in causes {
@@ -90,7 +89,7 @@ impl TwoWeeks<'_> {
         held
     }
 
-    /// Load as it would be if as much had been used as a week before, with the luck of that day.
+    /// Returns the utilization for the usage of the week before, with the random draws of that day.
     fn service(&self, undone: &[DayFigures]) -> Vec<HeldService> {
         let week = self.between.params.run.days_per_week;
         let used = |days: &[DayFigures], wanted: u32| {

@@ -1,4 +1,4 @@
-//! A week that is simulated again and again, each time with other causes taken away.
+//! Re-simulates a week repeatedly, each time without other causes.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
@@ -23,22 +23,22 @@ use novamind_world::events::DayFigures;
 use novamind_world::held::Held;
 use novamind_world::identifiers::{ByGroup, Group};
 
-/// Which causes are taken away: the player's calls and inputs of the world, by their place in the laboratory, a bit for each.
+/// A set of removed causes: one bit for each tool and each input, by index.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Without {
     pub calls: u32,
     pub inputs: u32,
 }
 
-/// A cause that can be taken away.
+/// A cause that can be removed.
 pub(super) struct Candidate {
     pub cause: Cause,
     pub details: Vec<Detail>,
-    /// Lines of its calls; none of an input.
+    /// Lines of its calls; empty for an input.
     lines: BTreeSet<u64>,
 }
 
-/// A week, the one before it, and what was found out about it so far.
+/// A week, the week before, and the results of simulations.
 pub(super) struct Laboratory {
     week: u32,
     between: Arc<KeptState>,
@@ -47,20 +47,19 @@ pub(super) struct Laboratory {
     after: BranchOutcome,
     week_before: SimulatedWeek,
     pub(super) sight: Sight,
-    /// Tools whose calls the player made.
+    /// Tools that the player called.
     pub(super) calls: Vec<Candidate>,
-    /// Inputs that differ.
     pub(super) inputs: Vec<Candidate>,
-    /// Days with all calls undone; none before that was simulated.
+    /// Days without any call; `None` until simulated.
     undone: Vec<DayFigures>,
     known: BTreeMap<Without, SimulatedWeek>,
 }
 
 impl Laboratory {
-    /// Of a week of a run. None if it was stopped.
+    /// Prepares a week of a run. Returns `None` if stopped.
     ///
     /// # Errors
-    /// The record does not lead to the states it names.
+    /// Returns an error if the simulation does not reproduce the recorded states.
     pub(super) fn of(
         past: &mut Past,
         sight: Sight,
@@ -103,39 +102,37 @@ impl Laboratory {
         }))
     }
 
-    /// Its week.
     pub(super) fn week(&self) -> u32 {
         self.week
     }
 
-    /// Days of the week before, and of its week.
+    /// Returns the number of days of the week before and of the week.
     pub(super) fn days(&self) -> [u32; 2] {
         [&self.before, &self.after].map(|outcome| outcome.days.len() as u32)
     }
 
-    /// Figures of the week before.
     pub(super) fn week_before(&self) -> &SimulatedWeek {
         &self.week_before
     }
 
-    /// Whether the company knew a group at the end of the week.
+    /// Whether a group was discovered at the end of the week.
     pub(super) fn knows(&self, group: Group) -> bool {
         self.after.end.world.market.is_known(group)
     }
 
-    /// Weeks that were simulated again.
+    /// Returns the number of re-simulated weeks.
     pub(super) fn simulated(&self) -> usize {
         self.known.len() - 1
     }
 
-    /// Figures of the week without some causes, which have to be known.
+    /// Returns the figures of the week without some causes, which must be simulated already.
     pub(super) fn without(&self, without: Without) -> &SimulatedWeek {
         &self.known[&without]
     }
 
-    /// Simulates what is not known yet. None if it was stopped.
+    /// Simulates the sets that have no result yet. Returns `None` if stopped.
     pub(super) fn find_out(&mut self, wanted: &[Without], progress: OnProgress<'_>) -> Option<()> {
-        // The load of the service is held against days with all calls undone.
+        // Utilization is relative to days without any call.
         let undone = Without { calls: (1 << self.calls.len()) - 1, inputs: 0 };
         if self.undone.is_empty() && wanted.iter().any(|without| without.inputs != 0) {
             let outcome = self.simulate(undone, &mut |_| ControlFlow::Continue(()))?;
@@ -184,7 +181,7 @@ impl Laboratory {
         };
         let edits = Edits { dropped, held, ..Edits::default() };
         let outcome = counterfactual(&self.between, &self.moves, &edits, self.after.end.world.day, go_on)?;
-        // A week that ends early has no figures that could be held against those of the whole one.
+        // The figures of a week that ends early cannot be compared with those of a complete week.
         outcome.crowded.is_none().then_some(outcome)
     }
 }
@@ -193,7 +190,7 @@ fn chosen(candidates: &[Candidate], set: u32) -> impl Iterator<Item = &Candidate
     candidates.iter().enumerate().filter(move |(at, _)| set & (1 << at) != 0).map(|(_, own)| own)
 }
 
-/// What the player did in the week, by tool; settings that ended where they began only count if days passed in between.
+/// Returns the player's calls in the week by tool. A setting that returned to its first value counts only if days passed in between.
 fn decided(eve: &KeptState, moves: &[Move], after: &BranchOutcome) -> Vec<Candidate> {
     let set = changes(&eve.world.settings, &after.end.world.settings);
     let in_steps = moves.iter().filter(|step| matches!(step, Move::Days(_))).count() > 1;
@@ -221,7 +218,7 @@ fn decided(eve: &KeptState, moves: &[Move], after: &BranchOutcome) -> Vec<Candid
     by_tool
 }
 
-/// Parameters that were set in the week, or began to act in it.
+/// Returns the parameters that were set in the week or took effect in it.
 fn set_parameters(eve: &KeptState, moves: &[Move], end: u32) -> Option<Candidate> {
     let set = moves.iter().filter_map(|step| match step {
         Move::Parameter(setting) => Some(&setting.change),
@@ -240,7 +237,7 @@ fn accepted(step: &Move) -> Option<&PastCall> {
     }
 }
 
-/// The last week of days that were simulated after a moment; they are no more than this week.
+/// Returns the last week of the days after a state, which are at most one week.
 fn simulated_week(before: &KeptState, outcome: &BranchOutcome) -> SimulatedWeek {
     let measured = outcome.groups.last().copied().unwrap_or_default();
     SimulatedWeek {

@@ -1,9 +1,9 @@
-//! Why a figure of a week changed: the week is simulated again with each of its causes taken away, under the same luck.
+//! Causes of a weekly change: re-simulates the week without each cause, with the same random draws.
 //!
-//! A cause is something that differs from the week before: settings and calls of the player, by tool, and inputs of the world
-//! that nobody in the company controls. What a cause contributes is its Shapley value. Inputs are valued with the player's
-//! changes undone, and the player's changes in the world as it was; so a single change is worth exactly what a branch without
-//! it lacks. What no cause explains is composition and chance: other customers are due, and luck is drawn anew every day.
+//! A cause is a difference from the week before: settings and calls of the player, by tool, and world inputs that the company does
+//! not control. The contribution of a cause is its Shapley value. Inputs are evaluated without the player's changes, and the
+//! player's changes in the recorded world. Therefore a single change contributes exactly the difference to a branch without it.
+//! The residual is composition and chance: other customers have their billing day, and every day has new random draws.
 
 mod access;
 mod cause;
@@ -30,19 +30,19 @@ use novamind_record::lesson::is_lesson_over;
 use novamind_session::{Look, Session, not_readable};
 use novamind_tools::Refusal;
 
-/// How far an answer has come.
+/// The progress of an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WhyProgress {
-    /// Days are simulated up to the week: the day reached, and the last one.
+    /// Simulating days up to the week: the current day, and the last one.
     Reaching(u32, u32),
-    /// Weeks that were simulated again, and how many there will be at least.
+    /// Number of re-simulated weeks, and the minimum total.
     Simulated(usize, usize),
 }
 
-/// What is told of progress; it can stop the work.
+/// Receives the progress. Can stop the work.
 pub type OnProgress<'a> = &'a (dyn Fn(WhyProgress) -> ControlFlow<()> + Sync);
 
-/// Answers why figures of the weeks of a run changed. It keeps what it has simulated for the next question.
+/// Explains changes of weekly figures of a run. Caches simulations for the next question.
 pub struct Causes {
     past: Past,
     sight: Sight,
@@ -69,12 +69,12 @@ impl OfRecord for Causes {
 }
 
 impl Causes {
-    /// Why a figure changed in a week, the last one that ran if none is named. None if it was stopped.
+    /// Explains why a figure changed in a week, by default the last completed one. Returns `None` if stopped.
     ///
     /// # Errors
     /// `not_in_this_mode` for a figure that the player may not see; `unknown_group` for a group that the player did not know;
-    /// `week_unknown` for a week that has not run, the first, and one cut short; `not_readable`; `no_value` where the figure has
-    /// none in one of the two weeks.
+    /// `week_unknown` for a week that has not run, the first week, and an incomplete week; `not_readable`; `no_value` if the figure
+    /// has no value in one of the two weeks.
     pub fn why(&mut self, asked: WeekQuestion, progress: OnProgress<'_>) -> Result<Option<Why>, Refusal> {
         let WeekQuestion { quantity, week } = asked;
         access::refuse_hidden(quantity, self.sight)?;
@@ -90,7 +90,7 @@ impl Causes {
         }
     }
 
-    /// A week that can be explained.
+    /// Returns the number of a week that can be explained.
     fn known(&self, week: Option<u32>) -> Result<u32, Refusal> {
         let days = self.past.days_per_week();
         let last = self.past.last_day().min(self.past.manifest.days).div_ceil(days);
@@ -101,17 +101,19 @@ impl Causes {
             return Ok(asked);
         }
         let message = match last {
-            0 | 1 => "why compares a week with the one before it: run two weeks first".to_owned(),
+            0 | 1 => "why compares a week with the week before. Run two weeks first".to_owned(),
             last => {
-                format!("week {asked} cannot be compared with one before it; choose a week from 2 to {last}")
+                format!(
+                    "week {asked} cannot be compared with the week before; choose a week from 2 to {last}"
+                )
             }
         };
         Err(Refusal::at("week", "week_unknown", message))
     }
 }
 
-/// Begins a question: a figure that is hidden while a run is played is shown as a look, which is recorded before anything
-/// is shown. The folder from which [`Causes::read`] can answer.
+/// Prepares a question. Records an inspection first if the figure is hidden in unfinished runs. Returns the folder for
+/// [`Causes::read`].
 ///
 /// # Errors
 /// `not_in_this_mode`, `not_possible`, `day_unknown`, `not_saved`.
@@ -121,7 +123,7 @@ pub fn begin_why(run: &mut Session, asked: &WeekQuestion) -> Result<PathBuf, Ref
     Ok(folder)
 }
 
-/// Records a look at a figure that is hidden while a run is played; any other is no look.
+/// Records an inspection if the figure is hidden in unfinished runs.
 ///
 /// # Errors
 /// `not_in_this_mode`, `day_unknown`, `not_saved`.
@@ -141,12 +143,12 @@ fn own_sight(run: &Session) -> Result<Sight, Refusal> {
     sight(run.manifest(), is_over)
 }
 
-/// The folder from which [`Causes::read`] can answer for this run.
+/// Returns the folder of this run for [`Causes::read`].
 ///
 /// # Errors
 /// `not_in_this_mode` for an unfinished baseline run, `not_possible` for a run in memory.
 pub fn folder_of_causes(run: &Session) -> Result<PathBuf, Refusal> {
     own_sight(run)?;
-    let missing = || Refusal::new("not_possible", "a run in memory has no record to simulate again");
+    let missing = || Refusal::new("not_possible", "a run in memory has no record that can be re-simulated");
     run.folder().map(Path::to_owned).ok_or_else(missing)
 }

@@ -1,4 +1,4 @@
-//! What is asked: a figure, of the company or of a group, and a week.
+//! A question: a figure of the company or of a group, and a week.
 
 use std::fmt;
 use std::str::FromStr;
@@ -9,7 +9,7 @@ use novamind_base::nearest;
 use novamind_record::figures::{FigureUnit, SimulatedWeek, WeekFigure};
 use novamind_world::identifiers::Group;
 
-/// A figure of a week, of the company or of a group.
+/// A weekly figure of the company or of a group.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WeekQuantity {
     figure: WeekFigure,
@@ -17,12 +17,12 @@ pub struct WeekQuantity {
 }
 
 impl WeekQuantity {
-    /// A figure of the company; none where it is one of groups only.
+    /// Returns a figure of the company, or `None` if only groups have it.
     pub fn of_company(figure: WeekFigure) -> Option<WeekQuantity> {
         WeekQuantity::new(figure, None).ok()
     }
 
-    /// A figure of a group; none where it is one of the company only.
+    /// Returns a figure of a group, or `None` if only the company has it.
     pub fn of_group(figure: WeekFigure, group: Group) -> Option<WeekQuantity> {
         WeekQuantity::new(figure, Some(group)).ok()
     }
@@ -40,12 +40,12 @@ impl WeekQuantity {
         self.figure
     }
 
-    /// The group; none for the company.
+    /// Returns the group, or `None` for the company.
     pub fn group(&self) -> Option<Group> {
         self.group
     }
 
-    /// Name in sentences: `churn of S1`, `cash change`.
+    /// Returns the name in sentences: `churn of S1`, `cash change`.
     pub fn name(&self) -> String {
         match self.group {
             Some(group) => format!("{} of {group}", self.figure.name()),
@@ -53,17 +53,17 @@ impl WeekQuantity {
         }
     }
 
-    /// What it is counted in.
+    /// Returns the unit.
     pub fn unit(&self) -> FigureUnit {
         self.figure.unit()
     }
 
-    /// Whether no player may see it whose run goes on, outside of debug runs.
+    /// Whether the figure is hidden in unfinished runs, except debug runs.
     pub fn is_hidden(&self) -> bool {
         self.figure.is_hidden()
     }
 
-    /// Its value in a week; not a number where it has none.
+    /// Returns the value in a week, NaN if it has none.
     pub(super) fn of(&self, week: &SimulatedWeek) -> f64 {
         let value = match self.group {
             Some(group) => self.figure.of_group().map(|read| read(&week.groups[group])),
@@ -73,7 +73,7 @@ impl WeekQuantity {
     }
 }
 
-/// `churn(S1)`, `cash_change`.
+/// Writes the identifier: `churn(S1)`, `cash_change`.
 impl fmt::Display for WeekQuantity {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let id = self.figure.id();
@@ -89,14 +89,14 @@ impl fmt::Display for WeekQuantity {
 pub struct WeekQuestion {
     /// The figure.
     pub quantity: WeekQuantity,
-    /// The week; none for the last one.
+    /// The week; `None` for the last one.
     pub week: Option<u32>,
 }
 
 impl FromStr for WeekQuestion {
     type Err = ConditionProblem;
 
-    /// `churn(S1) 44`, `new subscribers`. Words of a name may be joined by blanks, dashes or underscores.
+    /// Parses `churn(S1) 44` or `new subscribers`. Words of a name can be joined by spaces, dashes or underscores.
     fn from_str(text: &str) -> Result<WeekQuestion, ConditionProblem> {
         let (name, rest) = text.split_at(end_of_name(text));
         let figure = figure_called(name)?;
@@ -113,7 +113,7 @@ impl FromStr for WeekQuestion {
     }
 }
 
-/// Where a name ends: before a bracket, or before a last word that begins like a number.
+/// Returns the end of a name: before a bracket, or before a last word that starts like a number.
 fn end_of_name(text: &str) -> usize {
     let week = || {
         let (name, last) = text.trim_end().rsplit_once(char::is_whitespace)?;
@@ -180,11 +180,11 @@ mod tests {
             ("zzzz", "there is no figure zzzz; the figures are cash_change", 1),
             ("usage 4x", "a whole number is expected, not 4x", 7),
             ("usage 99999999999", "a whole number is expected, not 99999999999", 7),
-            ("churn(S1) 4 5", "5 is one word too many", 13),
+            ("churn(S1) 4 5", "unexpected 5 at the end", 13),
             ("churn(S12)", "S12 is not a group; did you mean S1", 7),
             ("churn(S1", "a closing bracket is missing", 9),
             ("churn()", "a group is missing", 7),
-            ("reputation 3", "reputation is a figure of a group; write for instance reputation(S1)", 1),
+            ("reputation 3", "reputation is a figure of a group; write for example reputation(S1)", 1),
             ("payments(S1)", "payments is a figure of the whole company; write payments without a group", 1),
         ] {
             let (said, at) = read(text).expect_err("a problem");

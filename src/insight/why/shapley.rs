@@ -1,7 +1,7 @@
-//! What each of several causes contributes to a value.
+//! Shapley values: the contribution of each of several causes to a value.
 
-/// Shapley values of so many causes: for each, the mean of what it adds to the value over all orders in which the causes can
-/// come. `value` is asked for sets of causes, a bit for each. They add up to the value of all less the value of none.
+/// Returns the Shapley value of each cause: the mean of its contributions over all orders of the causes. `value` returns the value
+/// of a set of causes, one bit for each. The Shapley values add up to the value of all causes minus the value of none.
 pub(super) fn shapley(causes: usize, value: impl Fn(u32) -> f64) -> Vec<f64> {
     let sets = 1u32 << causes;
     let values: Vec<f64> = (0..sets).map(value).collect();
@@ -19,7 +19,7 @@ pub(super) fn shapley(causes: usize, value: impl Fn(u32) -> f64) -> Vec<f64> {
     (0..causes).map(share).collect()
 }
 
-/// Share of all orders in which exactly a given set of so many causes comes before a given cause: s! (n - s - 1)! / n!.
+/// Returns the share of all orders in which exactly a given set of `s` causes precedes a given cause: s! (n - s - 1)! / n!.
 fn weights(causes: usize) -> Vec<f64> {
     let mut weights = Vec::with_capacity(causes);
     let mut choices = 1.0;

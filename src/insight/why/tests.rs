@@ -1,4 +1,4 @@
-//! Planted changes are found, worth what a branch without them lacks; parts add up; what is hidden stays hidden.
+//! Known changes are found with the effect of a branch without them; contributions add up; hidden state stays hidden.
 
 use std::ops::ControlFlow;
 
@@ -34,7 +34,7 @@ fn why(session: &Session, quantity: WeekQuantity) -> Why {
     causes_of(session).why(asked, &on).expect("an answer").expect("it is not stopped")
 }
 
-/// A week of a session, counted from 0, as what is simulated is compared with it: what nobody plays to see has no value.
+/// Returns a week of a session, counted from 0, for comparison with re-simulations.
 fn week_of(session: &Session, at: usize) -> SimulatedWeek {
     let subscribers =
         |at: usize, group| session.company().group_weeks()[at][group].subscribers.0.iter().sum();
@@ -58,12 +58,11 @@ fn week_of(session: &Session, at: usize) -> SimulatedWeek {
     }
 }
 
-/// Value of a figure in the last week of a session.
 fn last(session: &Session, quantity: WeekQuantity) -> f64 {
     quantity.of(&week_of(session, session.weeks().len() - 1))
 }
 
-/// Every figure of the company, and of some groups.
+/// Returns every figure of the company and of some groups.
 fn all_quantities() -> Vec<WeekQuantity> {
     let of_company = WeekFigure::ALL.iter().filter(|figure| figure.is_of_company()).copied().map(company);
     let of_group = WeekFigure::ALL.iter().filter(|figure| figure.is_of_group());
@@ -71,7 +70,7 @@ fn all_quantities() -> Vec<WeekQuantity> {
     of_company.chain(of_groups).collect()
 }
 
-/// Parts and rest add up to the change.
+/// Asserts that contributions and residual add up to the change.
 fn assert_whole(why: &Why) {
     let sum = why.parts.iter().map(|part| part.amount).sum::<f64>() + why.rest;
     assert!((sum - why.change()).abs() < 1e-9 * why.change().abs().max(1.0), "{sum} of {}", why.change());
@@ -186,7 +185,7 @@ fn all_figures_of_a_week_share_its_simulations() {
 #[test]
 fn without_a_change_no_decision_is_a_cause_and_every_figure_adds_up() {
     let runs = tempfile::tempdir().expect("a folder");
-    // What is set to what it was is no change.
+    // Setting the current value is not a change.
     let session = played(runs.path(), Mode::Debug, 5, Some(("set_prices", json!({"A": 12}))));
     let mut causes = causes_of(&session);
     let mut last_values = Vec::new();
@@ -203,7 +202,7 @@ fn without_a_change_no_decision_is_a_cause_and_every_figure_adds_up() {
             };
             assert_whole(&why);
             let at = week as usize - 1;
-            // Mood, reputation, issues and companies of a group are compared from week to week only.
+            // Satisfaction, reputation, issues and enterprises of a group have values only in consecutive weeks.
             let is_told = quantity
                 .group()
                 .is_none_or(|group| !group.is_enterprise() && quantity.figure() != WeekFigure::OpenIssues);
@@ -263,7 +262,7 @@ fn what_no_screen_shows_is_asked_in_debug_runs_and_ended_ones_only_and_is_a_look
                 ("not_in_this_mode", Err("not_in_this_mode"))
             );
         }
-        // A group that nobody has found has no figures.
+        // A group that is not discovered has no figures.
         let unknown = Group::all().find(|own| !own.initially_known()).expect("a group to find");
         let quantity = WeekQuantity::of_group(WeekFigure::Leads, unknown).expect("a figure");
         let refused =
@@ -278,7 +277,7 @@ fn what_no_screen_shows_is_asked_in_debug_runs_and_ended_ones_only_and_is_a_look
         }
         begin_why(&mut session, &WeekQuestion { quantity: company(WeekFigure::Churn), week: None })
             .expect("a folder");
-        assert_eq!(looks(&session), hidden.len(), "what screens show is no look");
+        assert_eq!(looks(&session), hidden.len(), "visible figures need no inspection");
     }
 }
 
@@ -356,7 +355,7 @@ fn weeks_that_cannot_be_compared_are_refused_and_work_can_be_stopped() {
             _ => ControlFlow::Continue(()),
         };
         assert_eq!(causes.why(usage, &stopping), Ok(None), "{stop:?}");
-        // What was stopped can be asked again.
+        // A stopped question can be repeated.
         assert!(causes.why(usage, &on).expect("an answer").is_some());
     }
 }

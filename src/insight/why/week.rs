@@ -1,4 +1,4 @@
-//! The causes of a change, worth what simulations without them show.
+//! The causes of a change, with contributions from simulations without them.
 
 use super::OnProgress;
 use super::access::Sight;
@@ -9,7 +9,7 @@ use super::shapley::shapley;
 use novamind_record::figures::SimulatedWeek;
 use novamind_tools::Refusal;
 
-/// Causes that are valued for themselves; more of them would take too many simulations.
+/// Maximum number of separate causes, which limits the number of simulations.
 const MOST: usize = 6;
 
 /// Why a figure changed in a week.
@@ -19,52 +19,52 @@ pub struct Why {
     pub week: u32,
     /// The figure.
     pub quantity: WeekQuantity,
-    /// Days of the week before, and of the week: the last one of a run may be short.
+    /// Number of days of the week before and of the week; the last week of a run can be shorter.
     pub days: [u32; 2],
-    /// Its value the week before.
+    /// Value in the week before.
     pub before: f64,
-    /// Its value.
+    /// Value in the week.
     pub after: f64,
-    /// What each cause contributes, the largest first.
+    /// Contributions of causes, the largest first.
     pub parts: Vec<WhyPart>,
-    /// What no cause explains: composition and chance.
+    /// Residual that no cause explains: composition and chance.
     pub rest: f64,
-    /// Weeks that were simulated again for it.
+    /// Number of re-simulated weeks.
     pub simulations: usize,
 }
 
 impl Why {
-    /// The change that is explained.
+    /// Returns the change between the two weeks.
     pub fn change(&self) -> f64 {
         self.after - self.before
     }
 }
 
-/// What a cause contributes.
+/// The contribution of a cause.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WhyPart {
     /// The cause.
     pub cause: Cause,
-    /// Its share of the change, in the unit of the figure.
+    /// Contribution to the change, in the unit of the figure.
     pub amount: f64,
-    /// What differs about it.
+    /// Differences of the cause.
     pub details: Vec<Detail>,
 }
 
-/// Causes that are valued as one.
+/// Causes that are evaluated together.
 #[derive(Clone)]
 struct Group {
     cause: Cause,
-    /// Their places in the laboratory, a bit for each.
+    /// Their indices in the laboratory, one bit for each.
     members: u32,
     details: Vec<Detail>,
 }
 
 impl Laboratory {
-    /// Why a figure changed. None if it was stopped.
+    /// Explains why a figure changed. Returns `None` if stopped.
     ///
     /// # Errors
-    /// `no_value` where the figure has none in one of the two weeks.
+    /// `no_value` if the figure has no value in one of the two weeks.
     pub(super) fn why(
         &mut self,
         quantity: WeekQuantity,
@@ -73,8 +73,10 @@ impl Laboratory {
         let after = self.without(Without { calls: 0, inputs: 0 });
         let values = (quantity.of(self.week_before()), quantity.of(after));
         if values.0.is_nan() || values.1.is_nan() {
-            let message =
-                format!("{} has no value in one of the two weeks: nothing was counted", quantity.name());
+            let message = format!(
+                "{} has no value in one of the two weeks, because there was nothing to count",
+                quantity.name()
+            );
             return Err(Refusal::at("figure", "no_value", message));
         }
         let (mut calls, mut inputs) = (groups(&self.calls), self.groups_of_inputs());
@@ -83,7 +85,7 @@ impl Laboratory {
             return Ok(None);
         };
         let all_calls = Without { calls: union(&calls), inputs: union(&inputs) };
-        // What was paid once in the week before is missing in this one, whatever is done in it.
+        // One-time payments of the week before do not recur in this week.
         let earlier = read(quantity, &self.week_before().without_purchases()) - values.0;
         if earlier != 0.0 {
             let cause = Cause::EarlierPurchases;
@@ -97,7 +99,7 @@ impl Laboratory {
         Ok(Some(Why { week, quantity, days, before, after, parts, rest, simulations }))
     }
 
-    /// Inputs as far as they may be told apart.
+    /// Returns the inputs in the permitted level of detail.
     fn groups_of_inputs(&self) -> Vec<Group> {
         let all = groups(&self.inputs);
         if self.sight == Sight::All {
@@ -109,7 +111,7 @@ impl Laboratory {
         (!hidden.is_empty()).then_some(market).into_iter().chain(service).collect()
     }
 
-    /// Joins the causes that do least until few enough are left.
+    /// Joins the causes with the smallest contributions until the maximum number is reached.
     fn join_least(
         &mut self,
         quantity: WeekQuantity,
@@ -129,7 +131,6 @@ impl Laboratory {
         self.find_out(&wanted, progress)?;
         let value = |without| read(quantity, self.without(without));
         let actual = value(Without { calls: 0, inputs: 0 });
-        // The greatest first.
         let by_size = |groups: &mut Vec<Group>, size: &dyn Fn(&Group) -> f64| {
             groups.sort_by(|left, right| size(right).abs().total_cmp(&size(left).abs()));
         };
@@ -145,7 +146,6 @@ impl Laboratory {
         Some(())
     }
 
-    /// What each cause contributes.
     fn value(
         &mut self,
         quantity: WeekQuantity,
@@ -154,7 +154,7 @@ impl Laboratory {
         progress: OnProgress<'_>,
     ) -> Option<Vec<WhyPart>> {
         let all_calls = union(calls);
-        // Sets name the causes that act; what is not in them is taken away.
+        // Sets contain the active causes; all others are removed.
         let of_calls = |acting: u32| Without { calls: absent(calls, acting), inputs: 0 };
         let of_inputs = |acting: u32| Without { calls: all_calls, inputs: absent(inputs, acting) };
         let sets = |groups: &[Group]| 0..1u32 << groups.len();
@@ -172,7 +172,7 @@ impl Laboratory {
     }
 }
 
-/// A share of nothing is none where a cause takes everything away.
+/// Returns a figure of a simulated week; 0 instead of NaN, for example a share of zero.
 fn read(quantity: WeekQuantity, week: &SimulatedWeek) -> f64 {
     let value = quantity.of(week);
     if value.is_nan() { 0.0 } else { value }
@@ -191,7 +191,7 @@ fn union(groups: &[Group]) -> u32 {
     groups.iter().fold(0, |all, group| all | group.members)
 }
 
-/// Members of the groups that are not in a set.
+/// Returns the members of all groups that are not in a set.
 fn absent(groups: &[Group], acting: u32) -> u32 {
     let without = groups.iter().enumerate().filter(|(at, _)| acting & (1 << at) == 0);
     without.fold(0, |all, (_, group)| all | group.members)

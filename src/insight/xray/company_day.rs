@@ -1,4 +1,4 @@
-//! A thread as the company sees it on a morning: what it would accept, and what it would answer.
+//! A thread from the enterprise's side at the start of a day: acceptable prices and the answer that it would give.
 
 use serde::Serialize;
 
@@ -11,54 +11,54 @@ use novamind_world::enterprise::{
 use novamind_world::events::{Offering, Sender, ThreadKind};
 use novamind_world::identifiers::{ByPlan, Group};
 
-/// A plan, as a company judges it.
+/// A plan, as an enterprise evaluates it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct JudgedPlan {
-    /// Quality as it perceives it today.
+    /// Perceived quality today.
     pub quality: f64,
-    /// The same after what a late answer costs, if the player answered today.
+    /// Perceived quality after the cost of a late answer, if the player answered today.
     pub quality_if_answered: f64,
-    /// The highest price that this is enough for, dollars a month and seat: it accepts prices below.
+    /// Upper price limit, dollars a month and seat: the enterprise accepts prices below it.
     pub accepts_below: f64,
-    /// Whether it accepts every price, as the quality is beyond all that it can require.
+    /// Whether the enterprise accepts every price, because the quality exceeds its highest requirement.
     pub accepts_any_price: bool,
-    /// The price that it would name in its next turn, dollars a month and seat; 0: it would fall silent.
+    /// Price that the enterprise would name in its next turn, dollars a month and seat; 0 if it would not answer.
     #[serde(rename = "would_name")]
     pub counter: f64,
 }
 
-/// An open thread on a day, before anybody answers.
+/// An open thread at the start of a day, before any answer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CompanyDay {
     /// The day.
     pub day: u32,
     /// Number of the thread.
     pub thread: u32,
-    /// The company.
+    /// Customer number.
     pub customer: u32,
-    /// Its group.
+    /// Group of the enterprise.
     pub group: Group,
-    /// How it began.
+    /// Type of the thread.
     pub kind: ThreadKind,
-    /// Budget with what the market has added, dollars a month and seat.
+    /// Budget including the market's addition, dollars a month and seat.
     pub budget: f64,
     /// The plans.
     pub plans: ByPlan<JudgedPlan>,
-    /// Turns in which it still answers; at 0 its next answer is silence.
+    /// Remaining turns with an answer; at 0 the enterprise does not answer again.
     pub turns_left: u32,
     /// Relationship, 0..=1.
     pub relationship: f64,
-    /// What an answer today would add to the relationship, as it is late; not positive.
+    /// Change of the relationship by a late answer today; not positive.
     pub late_penalty: f64,
-    /// Day on which it answers, if it is its turn.
+    /// Day of the enterprise's answer, if it is its turn.
     pub reply_day: Option<u32>,
-    /// The newest offerings of the player, if it is to answer to them; empty while the player's turn is awaited.
+    /// The player's newest offers, if the enterprise is to answer; empty if it is the player's turn.
     pub offerings: Vec<Offering>,
-    /// What it would answer to them today; none without offerings.
+    /// The answer that the enterprise would give today; `None` without offers.
     pub answer: Option<Answer>,
 }
 
-/// A thread this morning; none if it is over.
+/// Returns a thread at the start of the day, or `None` if it has ended.
 pub(crate) fn company_day(
     thread: &Thread,
     enterprise: &Enterprise,
@@ -77,7 +77,7 @@ pub(crate) fn company_day(
             enterprise.judge_of(thread, &Subscriber { relationship, ..row }, talks)?
         }
     };
-    // Its answer follows a turn of the player: the newest one, or the one that is awaited.
+    // The answer follows the player's newest or next turn.
     let turns = thread.last().number + u32::from(thread.last().sender != Sender::Agent);
     let plans = ByPlan::from_fn(|plan| {
         let Judge { curve, quality, initial_offer_factor, .. } = offended;

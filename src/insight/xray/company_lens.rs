@@ -1,4 +1,4 @@
-//! A company from within: who judges what is offered to it, day by day while a thread is open.
+//! The hidden state of an enterprise: its evaluation of offers on each day with an open thread.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -10,28 +10,28 @@ use novamind_world::day::watch::DayWatch;
 use novamind_world::enterprise::{Enterprise, Negotiation};
 use novamind_world::identifiers::Group;
 
-/// A company, up to the day that is shown.
+/// An enterprise, up to the shown day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CompanyLens {
     /// Customer number.
     pub customer: u32,
-    /// Its group.
+    /// Group of the enterprise.
     pub group: Group,
-    /// The day that is shown.
+    /// The shown day.
     pub day: u32,
-    /// Its threads day by day.
+    /// Threads by day.
     pub days: Vec<CompanyDay>,
 }
 
 impl CompanyLens {
-    /// The threads that were open on the day that is shown.
+    /// Returns the threads that were open on the shown day.
     pub fn shown(&self) -> impl Iterator<Item = &CompanyDay> {
         self.days.iter().filter(|own| own.day == self.day)
     }
 }
 
 impl CompanyLens {
-    /// A company on a day that it has reached.
+    /// Returns an enterprise on a simulated day.
     pub(super) fn of(
         run: &Session,
         look: &Look,
@@ -47,7 +47,7 @@ impl CompanyLens {
     }
 }
 
-/// Keeps the open threads of one company.
+/// Records the open threads of one enterprise.
 struct CompanyDiary {
     customer: u32,
     days: Mutex<Vec<CompanyDay>>,

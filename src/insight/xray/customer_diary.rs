@@ -1,4 +1,4 @@
-//! What is kept of the days of one individual that is watched.
+//! Records the days of one observed individual.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -17,12 +17,12 @@ use novamind_world::retention::renewal::RenewalContext;
 use novamind_world::retention::weighing::weigh;
 use novamind_world::state::World;
 
-/// A plan, as a lead sees it.
+/// A plan, as a lead evaluates it.
 #[derive(Debug, Clone, Copy)]
 pub struct FirstTerms {
     /// Price after the discount, and quality with the quota, before noise.
     pub offered: Choice,
-    /// Quality required at the price.
+    /// Required quality at the price.
     pub required: f64,
 }
 
@@ -31,57 +31,56 @@ pub struct FirstTerms {
 pub struct FirstDecision {
     /// The day.
     pub day: u32,
-    /// How it came.
+    /// Source of the lead.
     pub source: Source,
     /// The plans.
     pub plans: ByPlan<FirstTerms>,
-    /// The plan it looked at: the one with the largest surplus before noise, A if there is none.
+    /// The evaluated plan: the one with the largest surplus before noise, or A if there is none.
     pub plan: Plan,
-    /// Factor of the quality as it saw it.
+    /// Noise factor of the perceived quality.
     pub noise: f64,
-    /// Its curve, with the market's expectations.
+    /// Participation curve with market expectations.
     pub curve: Curve,
-    /// Whether it signed up.
+    /// Whether the lead signed up.
     pub signed_up: bool,
 }
 
-/// What came of a day.
+/// The outcome of a day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DayOutcome {
-    /// It is there.
+    /// Still subscribed.
     Stays,
-    /// It is on another plan.
+    /// Switched to another plan.
     Switches(Plan),
-    /// It left.
+    /// Cancelled.
     Leaves(EndCause),
 }
 
-/// A day of a subscriber, at the moment of the decisions.
+/// A day of a subscriber, at the time of the decisions.
 #[derive(Debug, Clone)]
 pub struct CustomerDay {
     /// The day.
     pub day: u32,
-    /// Plan of the morning.
+    /// Plan at the start of the day.
     pub plan: Plan,
     /// Price in force, dollars a month.
     pub price: f64,
-    /// Satisfaction after today.
+    /// Satisfaction after the day.
     pub satisfaction: f64,
     /// Relationship, 0..=1.
     pub relationship: f64,
-    /// Days an issue has been open.
+    /// Number of days that an issue has been open.
     pub open_issue_days: u32,
     /// Whether it is a billing day.
     pub is_due: bool,
-    /// Chance that the payment fails for good, on a billing day.
+    /// Probability of a failed payment on a billing day.
     pub payment_failure: f64,
-    /// What it weighs, or would weigh if it were a billing day.
+    /// The evaluated decision, also on days that are not billing days.
     pub weighed: Weighed,
-    /// What came of it.
+    /// Outcome of the day.
     pub outcome: DayOutcome,
 }
 
-/// Keeps the days of one individual.
 pub(crate) struct CustomerDiary {
     customer: u32,
     group: Group,
@@ -99,12 +98,11 @@ pub(crate) struct CustomerPages {
 }
 
 impl CustomerDiary {
-    /// An empty one of the n-th customer of a group.
+    /// Creates an empty recorder for the n-th customer of a group.
     pub(crate) fn of(customer: u32, (group, n): (Group, u32), arrival_day: u32) -> CustomerDiary {
         CustomerDiary { customer, group, n, arrival_day, pages: Mutex::default() }
     }
 
-    /// What it holds.
     pub(crate) fn take(&self) -> CustomerPages {
         std::mem::take(&mut *self.pages())
     }

@@ -1,4 +1,4 @@
-//! An individual from within: how it came, and each day what it weighed.
+//! The hidden state of an individual: its first decision, and its evaluated decision of each day.
 
 use std::sync::Arc;
 
@@ -7,33 +7,33 @@ use novamind_session::{Look, Session};
 use novamind_tools::Refusal;
 use novamind_world::identifiers::Group;
 
-/// An individual, up to the day that is shown.
+/// An individual, up to the shown day.
 #[derive(Debug, Clone)]
 pub struct CustomerLens {
     /// Customer number.
     pub customer: u32,
-    /// Its group.
+    /// Group of the individual.
     pub group: Group,
-    /// The day that is shown.
+    /// The shown day.
     pub day: u32,
-    /// How it decided when it came.
+    /// Decision as a lead.
     pub first: FirstDecision,
-    /// Its days as a subscriber, from the one after it signed up.
+    /// Days as a subscriber, from the day after sign-up.
     pub days: Vec<CustomerDay>,
 }
 
 impl CustomerLens {
-    /// The day that is shown, or the last one before it on which it was a subscriber.
+    /// Returns the shown day, or the last earlier day as a subscriber.
     pub fn shown(&self) -> Option<&CustomerDay> {
         self.days.last()
     }
 
-    /// Day on which the issue was opened that is open on the day that is shown.
+    /// Returns the day on which the currently open issue was opened.
     pub fn issue_since(&self) -> Option<u32> {
         let shown = self.shown().filter(|own| own.open_issue_days > 0)?;
         let days = self.days.iter().rev();
         let mut later = u32::MAX;
-        // Days count up while an issue is open: where they do not, another one was.
+        // The count increases while an issue is open; otherwise a new issue was opened.
         let same = days.take_while(|own| {
             let is_same = own.open_issue_days > 0 && own.open_issue_days < later;
             later = own.open_issue_days;
@@ -42,7 +42,7 @@ impl CustomerLens {
         same.last().map_or(Some(shown.day), |own| Some(own.day))
     }
 
-    /// The last bill before that day.
+    /// Returns the last bill before that day.
     pub fn last_bill(&self) -> Option<&CustomerDay> {
         let shown = self.shown()?.day;
         self.days.iter().rev().find(|own| own.is_due && own.day < shown)
@@ -50,7 +50,7 @@ impl CustomerLens {
 }
 
 impl CustomerLens {
-    /// An individual on a day that it has reached.
+    /// Returns an individual on a simulated day.
     pub(super) fn of(
         run: &Session,
         look: &Look,
@@ -65,7 +65,7 @@ impl CustomerLens {
         let Some(first) = pages.first else {
             return Err(Refusal::new(
                 "not_readable",
-                format!("customer {customer} could not be seen coming"),
+                format!("the first day of customer {customer} could not be re-simulated"),
             ));
         };
         let days = pages.days.into_iter().filter(|own| own.day <= day).collect();

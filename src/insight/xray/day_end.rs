@@ -1,4 +1,4 @@
-//! What is kept of the end of a day, so that two of them can be held against each other.
+//! Records the ends of days for comparisons.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -12,16 +12,14 @@ use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 use novamind_world::state::{PartHash, World};
 
-/// The end of a day.
 #[derive(Debug, Clone)]
 pub(crate) struct DayEnd {
     /// Hashes of the parts of the state, and of the facts of the day.
     pub(crate) parts: Vec<PartHash>,
-    /// Parameters with which the day was simulated.
+    /// Parameters of the day's simulation.
     pub(crate) params: Params,
-    /// Figures by name, hidden ones included, in one order.
+    /// Figures by name in a fixed order, including hidden ones.
     pub(crate) figures: Vec<(String, f64)>,
-    /// Active subscribers by customer number.
     pub(crate) customers: BTreeMap<u32, (Group, Subscriber)>,
 }
 
@@ -38,7 +36,7 @@ impl DayEnd {
     }
 }
 
-/// Hashes of the parts of a state, and of what happened on its day.
+/// Hashes of the parts of a state, and of the facts of its day.
 fn parts_of(world: &World, facts: &Facts) -> Vec<PartHash> {
     let mut parts = world.part_hashes();
     parts.push(PartHash { part: "facts", hash: hash_of(facts) });
@@ -82,19 +80,18 @@ fn figures_of(world: &World, facts: &Facts) -> Vec<(String, f64)> {
     figures
 }
 
-/// Keeps the ends of some days.
+/// Records the ends of selected days.
 pub(crate) struct Album {
     wanted: Vec<u32>,
     moments: Mutex<BTreeMap<u32, DayEnd>>,
 }
 
 impl Album {
-    /// Of these days.
+    /// Creates a recorder for these days.
     pub(crate) fn of(wanted: &[u32]) -> Album {
         Album { wanted: wanted.to_vec(), moments: Mutex::default() }
     }
 
-    /// The end of a day that has been seen.
     pub(crate) fn take(&self, day: u32) -> Option<DayEnd> {
         self.moments.lock().unwrap_or_else(PoisonError::into_inner).remove(&day)
     }
@@ -109,24 +106,22 @@ impl DayWatch for Album {
     }
 }
 
-/// Keeps the hashes of every day, day 1 first, and the ends of some.
+/// Records the hashes of every day from day 1, and the ends of selected days.
 pub(crate) struct Fingerprints {
     parts: Mutex<Vec<Vec<PartHash>>>,
     album: Album,
 }
 
 impl Fingerprints {
-    /// Of every day, with the ends of these.
+    /// Creates a recorder for the hashes of every day and the ends of these days.
     pub(crate) fn with_ends(wanted: &[u32]) -> Fingerprints {
         Fingerprints { parts: Mutex::default(), album: Album::of(wanted) }
     }
 
-    /// The hashes of all days so far.
     pub(crate) fn all(&self) -> Vec<Vec<PartHash>> {
         self.parts.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// The end of a day that was wanted.
     pub(crate) fn take(&self, day: u32) -> Option<DayEnd> {
         self.album.take(day)
     }

@@ -1,4 +1,4 @@
-//! Two days of a run, or a day of two runs, held against each other: parts of the state, figures, customers.
+//! Comparison of two days of a run, or of one day of two runs: parts of the state, figures, customers.
 
 use std::sync::Arc;
 
@@ -11,54 +11,51 @@ use novamind_session::{Look, Session};
 use novamind_tools::Refusal;
 use novamind_world::identifiers::Group;
 
-/// Customers of whom it is told in what they differ.
+/// Maximum number of customers with listed differences.
 const CUSTOMERS_TOLD: usize = 10;
 
-/// Two ends of days, held against each other.
+/// The comparison of the ends of two days.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Difference {
-    /// The day of the first, and that of the second.
+    /// First and second day.
     pub days: (u32, u32),
-    /// Parameters with which the days were simulated and that differ: key, value in the first, value in the second; null where
-    /// one has none.
+    /// Simulation parameters that differ: key, first value, second value; null for a missing value.
     pub parameters: Vec<(String, Json, Json)>,
-    /// Names of the parts of the state whose hash differs, in the order of the state; at the end `facts`, what happened on the
-    /// day.
+    /// Names of the parts of the state whose hash differs, in the order of the state; `facts`, the events of the day, is last.
     pub parts: Vec<&'static str>,
-    /// Names of the parts that are alike.
+    /// Names of the equal parts.
     pub alike: Vec<&'static str>,
-    /// Figures that differ: name, value in the first, value in the second.
+    /// Figures that differ: name, first value, second value.
     pub figures: Vec<(String, f64, f64)>,
-    /// Customers who subscribe in both and differ in something.
+    /// Number of customers that subscribe on both sides and differ.
     pub customers: usize,
-    /// Customers who subscribe in the first only, and in the second only.
+    /// Numbers of customers that subscribe only on the first side, and only on the second.
     pub only: (usize, usize),
-    /// The first of those who differ, by their numbers.
+    /// The first customers that differ, by customer number.
     pub first_customers: Vec<CustomerDifference>,
 }
 
-/// What differs about a customer.
+/// The differences of a customer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CustomerDifference {
-    /// Number.
+    /// Customer number.
     pub customer: u32,
-    /// Group, in the first where it subscribes there.
+    /// Group, from the first side if the customer subscribes there.
     pub group: Group,
-    /// Whether it subscribes in the first, and in the second.
+    /// Whether the customer subscribes on the first side, and on the second.
     pub subscribes: (bool, bool),
-    /// Where it does in both: column, value in the first, value in the second.
+    /// If it subscribes on both sides: column, first value, second value.
     pub columns: Vec<(&'static str, String, String)>,
 }
 
-/// Two runs, held against each other.
+/// The comparison of two runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunDifference {
-    /// The last day that both have.
+    /// Last day that both runs have.
     pub last_day: u32,
-    /// The first day on which they differ; none: they are alike as far as both go.
+    /// First day on which the runs differ; `None` if they are equal on all common days.
     pub first_day: Option<u32>,
-    /// What differs on the day that was asked for, or on the first on which something does; none where nothing does and no day
-    /// was asked for.
+    /// Differences on the requested day, by default on the first day that differs; `None` without such a day.
     pub difference: Option<Difference>,
 }
 
@@ -89,7 +86,7 @@ impl Difference {
         }
     }
 
-    /// Whether nothing differs.
+    /// Whether there is no difference.
     pub fn is_none(&self) -> bool {
         self.parts.is_empty() && self.parameters.is_empty()
     }
@@ -118,7 +115,7 @@ fn customers_that_differ(one: &DayEnd, other: &DayEnd) -> Vec<CustomerDifference
 }
 
 impl Inspector<'_> {
-    /// What differs between the ends of two days. The look is recorded.
+    /// Compares the ends of two days. Records the inspection.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
@@ -137,11 +134,10 @@ impl Inspector<'_> {
         Ok(Difference::between((one, other), &first, &second))
     }
 
-    /// What differs between this run and another on a day, or on the first day on which something does. The look is recorded in
-    /// both.
+    /// Compares this run with another on a day, by default on the first day that differs. Records the inspection in both.
     ///
     /// # Errors
-    /// As [`Inspector::difference_of_days`]; the refusal of either run.
+    /// As [`Inspector::difference_of_days`], for either run.
     pub fn difference_to(&mut self, other: &mut Session, day: Option<u32>) -> Result<RunDifference, Refusal> {
         let run = &mut *self.run;
         run.refuse_to_look_inside()?;
@@ -168,7 +164,7 @@ impl Inspector<'_> {
             return Ok(RunDifference { last_day, first_day, difference: None });
         };
         let moment = |run: &Session, look: &Look, seen: &Fingerprints| {
-            // A day that was named has been seen on the way.
+            // A requested day was recorded during the simulation.
             if let Some(end) = seen.take(day) {
                 return Ok(end);
             }
@@ -186,5 +182,5 @@ impl Inspector<'_> {
 }
 
 fn not_reached() -> Refusal {
-    Refusal::new("not_readable", "the day was not reached when the run was simulated again")
+    Refusal::new("not_readable", "the re-simulation of the run did not reach the day")
 }

@@ -1,4 +1,4 @@
-//! How far expectations and budgets have moved, group by group, and what the next application of drift adds.
+//! Accumulated drift of expectations and budgets by group, and the next application of drift.
 
 use super::inspector::Inspector;
 use novamind_session::Look;
@@ -6,38 +6,38 @@ use novamind_tools::Refusal;
 use novamind_world::customers::drift::{Expectation, next_drift_day, step_of_everyone, step_of_group};
 use novamind_world::identifiers::Group;
 
-/// A group.
+/// The drift of a group.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GroupDrifted {
     /// The group.
     pub group: Group,
-    /// Whether it was known.
+    /// Whether the group was discovered.
     pub is_known: bool,
-    /// Added to its expectations beside those of everyone, by drift and by rivals.
+    /// Addition to the group's expectations beyond the common one, by drift and by competitors.
     pub own: f64,
-    /// Added to its curves: quality with everyone's, dollars a month to budgets.
+    /// Addition to its curves: quality including the common one, and dollars a month for budgets.
     pub expectation: Expectation,
-    /// What the next application adds beside everyone's.
+    /// Next addition beyond the common one.
     pub step: Expectation,
 }
 
-/// Expectations and budgets on the evening of a day.
+/// Expectations and budgets at the end of a day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriftState {
     /// The day, from 1.
     pub day: u32,
-    /// Added to everyone's expectations, by drift and by rivals.
+    /// Common addition to expectations, by drift and by competitors.
     pub everyone: f64,
-    /// What the next application adds to that.
+    /// Next common addition.
     pub step: f64,
-    /// Day of the next application; none before the end of the run.
+    /// Day of the next application; `None` if there is none before the end of the run.
     pub next_day: Option<u32>,
-    /// The groups, in their order.
+    /// The groups, in their fixed order.
     pub groups: Vec<GroupDrifted>,
 }
 
 impl Inspector<'_> {
-    /// Expectations and budgets on the evening of a day, the last one if none is named. The look is recorded.
+    /// Returns expectations and budgets at the end of a day, by default the last one. Records the inspection.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.

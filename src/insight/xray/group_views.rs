@@ -1,4 +1,4 @@
-//! Groups from within on a day: their quality, satisfaction and reputation.
+//! Hidden state of groups on a day: quality, satisfaction and reputation.
 
 use super::hidden_day::GroupEvening;
 use super::inspector::Inspector;
@@ -11,7 +11,7 @@ use novamind_tools::Refusal;
 use novamind_world::identifiers::Group;
 
 impl Inspector<'_> {
-    /// What was delivered to a group on a day, the last one if none is named. The look is recorded.
+    /// Returns the quality equation of a group on a day, by default the last one. Records the inspection.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
@@ -21,7 +21,7 @@ impl Inspector<'_> {
         self.hidden_day(&look, day).map(|seen| QualityEquation::of(group, day, &seen.quality))
     }
 
-    /// What moved the satisfaction of a group on a day, the last one if none is named. The look is recorded.
+    /// Returns the satisfaction equation of a group on a day, by default the last one. Records the inspection.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
@@ -44,7 +44,7 @@ impl Inspector<'_> {
         Ok(SatisfactionEquation::of(group, day, seen.satisfaction[group], evening, yesterday, evenings))
     }
 
-    /// What moved the reputation of a group on a day, the last one if none is named. The look is recorded.
+    /// Returns the reputation equation of a group on a day, by default the last one. Records the inspection.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
@@ -59,7 +59,7 @@ impl Inspector<'_> {
         self.hidden_day(&look, day).map(|seen| ReputationEquation::of(group, day, &seen.reputation, evenings))
     }
 
-    /// What is read of a group on the evening of a day and of up to 27 days before it.
+    /// Returns a value of a group at the end of a day and of up to 27 days before it.
     fn evenings<T>(
         &mut self,
         look: &Look,
@@ -73,7 +73,7 @@ impl Inspector<'_> {
         Ok((first..=day).filter_map(evening).collect())
     }
 
-    /// How changes of reputation spilled over on a day, the last one if none is named. The look is recorded.
+    /// Returns the spillover of reputation between groups on a day, by default the last one. Records the inspection.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.

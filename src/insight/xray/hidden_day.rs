@@ -1,4 +1,4 @@
-//! What is kept of a day that was watched.
+//! Records the hidden state of observed days.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -25,66 +25,57 @@ use novamind_world::params::Params;
 use novamind_world::reputation::{Mood, ReputationWrite};
 use novamind_world::state::World;
 
-/// A day, as far as groups and the market go.
+/// The groups and the market on a day.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct HiddenDay {
-    /// Which groups were known.
     pub(crate) known: ByGroup<bool>,
-    /// Factors of the leads.
     pub(crate) leads: ByGroup<LeadFactors>,
-    /// Leads by word of mouth before the factors, by the group whose subscribers bring them.
+    /// Leads by word of mouth before the factors, by source group.
     pub(crate) word_of_mouth: ByGroup<Vec<(Group, f64)>>,
-    /// Leads that came.
     pub(crate) came: ByGroup<u32>,
-    /// What quality was made of.
     pub(crate) quality: QualityDay,
-    /// What moved satisfaction.
+    /// Components of the satisfaction change.
     pub(crate) satisfaction: ByGroup<SatisfactionDay>,
-    /// What moved reputations.
+    /// Components of the reputation changes.
     pub(crate) reputation: ReputationDay,
-    /// What rivals could copy in the evening.
+    /// Improvements that competitors could copy at the end of the day.
     pub(crate) banks: Banks,
-    /// Threads of the morning in which somebody was still to answer, where they are kept.
+    /// Threads at the start of the day that still await an answer, if they are recorded.
     pub(crate) threads: Vec<CompanyDay>,
-    /// The groups in the evening.
     pub(crate) groups: ByGroup<GroupEvening>,
-    /// The market in the evening.
     pub(crate) market: MarketEvening,
 }
 
-/// Improvements, and how much of them no rival has copied.
+/// Improvements, and their parts that competitors have not copied.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Banks {
-    /// Quality gained for everybody.
+    /// Shared quality gain.
     pub(crate) shared_bonus: f64,
-    /// What is left of it to be copied.
+    /// Part of it that is not copied.
     pub(crate) shared: f64,
-    /// Quality gained for single groups.
+    /// Quality gain of single groups.
     pub(crate) group_bonus: ByGroup<f64>,
-    /// What is left of that.
+    /// Part of it that is not copied.
     pub(crate) own: ByGroup<f64>,
 }
 
-/// A group once a day is over.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct GroupEvening {
-    /// What the company knows of it, 0 before it is found.
+    /// Study level; 0 before the group is discovered.
     pub(crate) info_level: u32,
-    /// Active subscriptions.
     pub(crate) active: u32,
-    /// Reputation.
     pub(crate) reputation: f64,
-    /// Mean satisfaction and relationship of the active ones; none without any.
+    /// Mean satisfaction and relationship of active subscriptions; `None` without any.
     pub(crate) mood: Option<(f64, f64)>,
-    /// Active ones with an open issue.
+    /// Active subscriptions with an open issue.
     pub(crate) open_issues: u32,
     /// Product quality before the multiplier of the model.
     pub(crate) product_quality: f64,
-    /// Mean budget of customers who come, with what the market has added.
+    /// Mean budget of new customers, including the market's addition.
     pub(crate) budget: f64,
-    /// Mean quality floor of customers who come, with what the market has added.
+    /// Mean quality floor of new customers, including the market's addition.
     pub(crate) quality_floor: f64,
-    /// What its market holds; without a limit at 0.
+    /// Market cap; 0 means no limit.
     pub(crate) market_cap: f64,
     /// Factor of the economy on budgets.
     pub(crate) willingness_to_pay: f64,
@@ -94,61 +85,59 @@ pub(crate) struct GroupEvening {
     pub(crate) seat_count: f64,
 }
 
-/// The market once a day is over.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct MarketEvening {
-    /// What it has added to curves since day 0.
+    /// Additions to curves since day 0.
     pub(crate) drift: DriftTotals,
-    /// The event of the rivals on this day, with its severity.
+    /// The competitor event on this day, with its severity.
     pub(crate) event: Option<(Event, &'static str)>,
-    /// The index.
+    /// Index of the economy.
     pub(crate) pmi: f64,
-    /// Its newest measurement, and whether it is published.
+    /// Newest measurement of the index, and whether it is published.
     pub(crate) measured: Option<(Reading, bool)>,
 }
 
-/// Keeps every day that is simulated.
+/// Records every simulated day.
 #[derive(Debug, Default)]
 pub(crate) struct Diary {
-    /// Whether threads are kept as well: every company that negotiates judges every plan, every day.
+    /// Whether threads are recorded as well, which evaluates every plan for every negotiating enterprise and day.
     keeps_threads: bool,
     pages: Mutex<Pages>,
 }
 
 #[derive(Debug, Default)]
 struct Pages {
-    /// Days that are over, day 1 first.
+    /// Completed days, from day 1.
     days: Vec<HiddenDay>,
-    /// The day that is simulated.
     today: HiddenDay,
-    /// What satisfaction moved by, block by block.
+    /// Satisfaction changes by block.
     moods: MoodsByBlock,
-    /// What development has gained for everybody so far.
+    /// Accumulated shared gain of development.
     development: f64,
 }
 
 impl Diary {
-    /// An empty one that keeps threads as well.
+    /// Creates an empty recorder that includes threads.
     pub(crate) fn with_threads() -> Diary {
         Diary { keeps_threads: true, ..Diary::default() }
     }
 
-    /// Whether it keeps threads.
+    /// Whether threads are recorded.
     pub(crate) fn keeps_threads(&self) -> bool {
         self.keeps_threads
     }
 
-    /// Looks at a day that is over, from 1.
+    /// Calls a function with a completed day, from 1.
     pub(crate) fn read<R>(&self, day: u32, look: impl FnOnce(&HiddenDay) -> R) -> Option<R> {
         self.pages().days.get(day.checked_sub(1)? as usize).map(look)
     }
 
-    /// A day that is over, from 1.
+    /// Returns a completed day, from 1.
     pub(crate) fn day(&self, day: u32) -> Option<HiddenDay> {
         self.read(day, HiddenDay::clone)
     }
 
-    /// Hands over the threads of a day: there are many, so they are kept in one place only.
+    /// Takes the threads of a day, which are too large to be stored twice.
     pub(crate) fn take_threads(&self, day: u32) -> Vec<CompanyDay> {
         let at = day.checked_sub(1).map(|at| at as usize);
         let mut pages = self.pages();
@@ -231,8 +220,8 @@ impl DayWatch for Diary {
     }
 }
 
-/// Whether something can still come of a thread: it is open, or dead and the company's answer is under way. One that is dead
-/// and only repeats its loss is not.
+/// Whether a thread can still change: it is open, or it is dead and an answer of the enterprise is pending. A dead thread that only
+/// repeats its loss cannot change.
 fn awaits_somebody(thread: &Thread, reappearing: bool) -> bool {
     thread.is_open() || thread.live(reappearing).is_some_and(|turn| turn.sender == Sender::Agent)
 }

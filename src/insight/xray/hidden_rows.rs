@@ -1,4 +1,4 @@
-//! The rows of the hidden tables, column by column as `assets/hidden_tables.toml` lists them.
+//! The rows of the hidden tables, in the column order of `assets/hidden_tables.toml`.
 
 use super::company_day::CompanyDay;
 use super::hidden_day::{GroupEvening, HiddenDay};
@@ -11,7 +11,6 @@ use novamind_world::state::World;
 
 use HiddenValue::{Null, Whole};
 
-/// `hidden.groups` of a day.
 pub(crate) fn groups(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 15]> {
     let rows = Group::all().map(|group| {
         let own: GroupEvening = seen.groups[group];
@@ -37,7 +36,6 @@ pub(crate) fn groups(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 15]> {
     rows.collect()
 }
 
-/// `hidden.drift` of a day.
 pub(crate) fn drift(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 5]> {
     let drift = &seen.market.drift;
     let rows = Group::all().map(|group| {
@@ -52,7 +50,7 @@ pub(crate) fn drift(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 5]> {
     rows.collect()
 }
 
-/// `hidden.factors` of a day: the groups that were known.
+/// Returns the rows of `hidden.factors` for a day: the discovered groups.
 pub(crate) fn factors(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 16]> {
     let rows = Group::all().filter(|group| seen.known[*group]).map(|group| {
         let own = &seen.leads[group];
@@ -79,7 +77,6 @@ pub(crate) fn factors(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 16]> {
     rows.collect()
 }
 
-/// `hidden.competitors` of a day.
 pub(crate) fn competitors(day: u32, seen: &HiddenDay) -> [HiddenValue; 8] {
     let event = seen.market.event.as_ref().map(|(event, _)| event);
     [
@@ -94,7 +91,6 @@ pub(crate) fn competitors(day: u32, seen: &HiddenDay) -> [HiddenValue; 8] {
     ]
 }
 
-/// `hidden.pmi` of a day.
 pub(crate) fn pmi(day: u32, seen: &HiddenDay) -> [HiddenValue; 8] {
     let reading = seen.market.measured.as_ref().map(|(reading, _)| reading);
     [
@@ -109,7 +105,6 @@ pub(crate) fn pmi(day: u32, seen: &HiddenDay) -> [HiddenValue; 8] {
     ]
 }
 
-/// A row of `hidden.threads`.
 pub(crate) fn thread(own: &CompanyDay) -> [HiddenValue; 22] {
     let accepts = |plan: Plan| {
         let judged = own.plans[plan];
@@ -148,7 +143,7 @@ pub(crate) fn thread(own: &CompanyDay) -> [HiddenValue; 22] {
     ]
 }
 
-/// `hidden.customers` of a world: the subscribers in its columns, then the companies that are none.
+/// Returns the rows of `hidden.customers` for a world: subscribers, then enterprises without a subscription.
 pub(crate) fn customers(world: &World) -> impl Iterator<Item = [HiddenValue; 32]> {
     let subscribers = world.customers.blocks().flat_map(move |(group, block)| {
         (0..block.len()).map(move |at| {
@@ -174,7 +169,7 @@ fn customer(
     row: &Subscriber,
     negotiator: Option<Negotiator>,
 ) -> [HiddenValue; 32] {
-    // What somebody without a subscription has in these columns means nothing yet, or no more.
+    // These columns have no meaning without a subscription.
     let is_subscriber = standing == "subscriber";
     let subscribed = |value: HiddenValue| if is_subscriber { value } else { Null };
     [

@@ -1,4 +1,4 @@
-//! The hidden tables of an open run: the connection that has them, and how far they are filled.
+//! The hidden tables of an open run: their connection, and the days that they contain.
 
 use std::collections::BTreeMap;
 
@@ -8,60 +8,56 @@ use novamind_database::{QueryConnection, QueryError, Table, Ticket};
 use novamind_world::canonical::hash_of;
 use novamind_world::state::World;
 
-/// The connection of the x-ray. Nobody else has one that knows the hidden tables.
+/// The connection of the x-ray, the only one with hidden tables.
 pub(crate) struct HiddenTables {
     connection: QueryConnection,
-    /// The number of the database that it reads.
     database: u32,
-    /// The last day in each table that has every day.
+    /// Last day in each table that contains every day.
     days: BTreeMap<&'static str, u32>,
-    /// What the table of customers shows; none before it was asked.
+    /// Content of the customer table; `None` before its first use.
     shown: Option<ShownCustomers>,
 }
 
-/// What the table of customers shows.
+/// The content of the customer table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ShownCustomers {
-    /// They as they stand, calls since the last day included.
+    /// The current state, including calls since the last day.
     Now {
-        /// Hash of the columns of subscribers.
+        /// Hash of the subscriber columns.
         customers: blake3::Hash,
-        /// Hash of companies and threads.
+        /// Hash of enterprises and threads.
         companies: blake3::Hash,
     },
-    /// They on the evening of a day.
+    /// The state at the end of a day.
     Evening(u32),
 }
 
 impl ShownCustomers {
-    /// They as they stand in a world.
     pub(crate) fn now(world: &World) -> ShownCustomers {
         ShownCustomers::Now { customers: world.customers.hash(), companies: hash_of(&world.enterprise) }
     }
 }
 
-/// The table that shows one day.
+/// The table that contains one day.
 pub(crate) const CUSTOMERS: &str = "hidden.customers";
-/// The table whose rows are kept only once it was asked.
+/// The table whose rows are recorded only after its first use.
 pub(crate) const THREADS: &str = "hidden.threads";
 
 impl HiddenTables {
-    /// Empty tables behind a connection to a database of the run.
+    /// Creates empty tables on a connection to a database of the run.
     pub(crate) fn behind(connection: QueryConnection, database: u32) -> HiddenTables {
         HiddenTables { connection, database, days: BTreeMap::new(), shown: None }
     }
 
-    /// The number of the database that it reads.
     pub(crate) fn database(&self) -> u32 {
         self.database
     }
 
-    /// The connection.
     pub(crate) fn connection(&self) -> &QueryConnection {
         &self.connection
     }
 
-    /// Whether a table that has every day lacks one.
+    /// Whether a table that contains every day lacks one.
     pub(crate) fn lacks(&self, table: &Table, day: u32) -> bool {
         self.filled_to(table) < day
     }
@@ -70,12 +66,12 @@ impl HiddenTables {
         self.days.get(table.name.as_str()).copied().unwrap_or(0)
     }
 
-    /// Whether the table of customers shows this already.
+    /// Whether the customer table already has this content.
     pub(crate) fn shows(&self, wanted: ShownCustomers) -> bool {
         self.shown == Some(wanted)
     }
 
-    /// Continues a table that has every day up to one of them, from a diary. The diary hands its threads over.
+    /// Extends a table up to a day with recorded days. Takes the threads of these days.
     pub(crate) fn continue_to(
         &mut self,
         day: u32,
@@ -115,7 +111,7 @@ impl HiddenTables {
         Ok(())
     }
 
-    /// Lets the table of customers show those of a world.
+    /// Fills the customer table from a world.
     pub(crate) fn show(
         &mut self,
         ticket: Ticket,

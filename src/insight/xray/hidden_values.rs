@@ -1,4 +1,4 @@
-//! What an evening really was, beside which screens show figures and estimates.
+//! True values at the end of a day, which screens show next to figures and estimates.
 
 use super::hidden_day::HiddenDay;
 use super::inspector::Inspector;
@@ -8,48 +8,48 @@ use novamind_tools::Refusal;
 use novamind_world::customers::drift::next_drift_day;
 use novamind_world::identifiers::{ByGroup, Group};
 
-/// A group on an evening.
+/// True values of a group at the end of a day.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrueGroup {
-    /// Whether it was known: an unknown one brings no leads.
+    /// Whether the group was discovered; other groups have no leads.
     pub is_known: bool,
     /// Reputation.
     pub reputation: f64,
-    /// Mean satisfaction of its subscribers; none without any.
+    /// Mean satisfaction of its subscribers; `None` without subscribers.
     pub satisfaction: Option<f64>,
-    /// Leads that were expected of it on the day.
+    /// Expected leads of the day.
     pub expected_leads: f64,
-    /// Mean budget of customers who come, dollars a month, of companies per seat, with what the market has added.
+    /// Mean budget of new customers, dollars a month (for enterprises per seat), including the market's addition.
     pub budget: f64,
-    /// Mean quality floor of customers who come, with what the market has added.
+    /// Mean quality floor of new customers, including the market's addition.
     pub quality_floor: f64,
-    /// Customers or companies that its market holds; without a size, and so without a limit, at 0.
+    /// Market cap in customers; 0 means no limit.
     pub market_cap: f64,
 }
 
-/// The groups and the market on the evening of a day.
+/// True values of groups and market at the end of a day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HiddenValues {
     /// The day, from 1.
     pub day: u32,
     /// The groups.
     pub groups: ByGroup<TrueGroup>,
-    /// Shared quality that no rival has copied.
+    /// Shared quality that competitors have not copied.
     pub shared_bank: f64,
-    /// Quality of single groups that no rival has copied; those with any.
+    /// Targeted quality that competitors have not copied, for groups that have any.
     pub own_banks: Vec<(Group, f64)>,
-    /// The next move of rivals; none before the end of the run.
+    /// Next competitor move; `None` if there is none before the end of the run.
     pub next_move: Option<NextRivalMove>,
-    /// What rivals and drift have added to everyone's expectations.
+    /// Common addition to expectations by competitors and drift.
     pub everyone: f64,
-    /// Day on which drift is applied next; none before the end of the run.
+    /// Day of the next drift; `None` if there is none before the end of the run.
     pub next_drift: Option<u32>,
-    /// The index of the economy.
+    /// Index of the economy.
     pub pmi: f64,
 }
 
 impl Inspector<'_> {
-    /// What the evening of a day really was, the last one if none is named. The look is recorded.
+    /// Returns the true values at the end of a day, by default the last one. Records the inspection.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.

@@ -1,4 +1,4 @@
-//! Questions about the hidden state of a run. What they simulated is kept with the run and used by the next question.
+//! The inspector of hidden state. Simulated days are cached with the run for the next question.
 
 use std::sync::Arc;
 
@@ -8,20 +8,18 @@ use super::hidden_tables::HiddenTables;
 use novamind_session::{Look, Session, Shadow};
 use novamind_tools::Refusal;
 
-/// What questions about hidden state keep with a run.
+/// Cached data of inspections of a run.
 #[derive(Default)]
 pub(super) struct Observations {
-    /// The copy that simulates the days again; `None` before the first question.
+    /// The copy that re-simulates the days; `None` before the first question.
     pub(super) shadow: Option<Shadow>,
-    /// The hidden state of its days.
     pub(super) diary: Arc<Diary>,
-    /// Conditions at which the run stops.
     pub(super) breakpoints: Breakpoints,
     /// The hidden tables; `None` before the first query.
     pub(super) hidden_tables: Option<HiddenTables>,
 }
 
-/// Answers questions about the hidden state of a run. Each question is refused, or recorded before it is answered.
+/// The inspector of a run's hidden state. Each question is rejected, or recorded before it is answered.
 pub struct Inspector<'a> {
     pub(super) run: &'a mut Session,
     pub(super) own: Box<Observations>,
@@ -46,7 +44,7 @@ impl Drop for Inspector<'_> {
 }
 
 impl Inspector<'_> {
-    /// Days that are over, as they were seen from within, the first one first.
+    /// Returns the hidden state of completed days, in ascending order.
     ///
     /// # Errors
     /// `not_possible`, `not_readable`.
@@ -59,17 +57,17 @@ impl Inspector<'_> {
         Ok(days.into_iter().filter_map(|day| diary.day(day)).collect())
     }
 
-    /// A day that is over, as it was seen from within.
+    /// Returns the hidden state of a completed day.
     ///
     /// # Errors
     /// `not_possible`, `not_readable`.
     pub(super) fn hidden_day(&mut self, look: &Look, day: u32) -> Result<HiddenDay, Refusal> {
         let seen = self.hidden_days(look, [day])?.pop();
-        seen.ok_or_else(|| Refusal::new("not_readable", format!("day {day} could not be simulated again")))
+        seen.ok_or_else(|| Refusal::new("not_readable", format!("day {day} could not be re-simulated")))
     }
 
-    /// What was seen of every day up to now, with the threads of each if they are to be kept: a shadow that was led without
-    /// keeping them begins anew.
+    /// Returns the hidden state of all days up to now, optionally with threads. Restarts the re-simulation if it has no
+    /// threads yet.
     ///
     /// # Errors
     /// `not_possible`, `not_readable`.
@@ -87,7 +85,7 @@ impl Inspector<'_> {
                 look.shadow(self.run, self.own.diary.clone())?
             }
         };
-        // A shadow that went wrong is not kept: the next look begins anew.
+        // After an error, the next inspection restarts the re-simulation.
         shadow.lead(self.run, |_| true, &mut |_| {})?;
         self.own.shadow = Some(shadow);
         Ok(self.own.diary.clone())

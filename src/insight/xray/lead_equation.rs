@@ -1,4 +1,4 @@
-//! Why a group brought so many leads on a day: every factor, every source, and how likely what came was.
+//! The lead equation of a group on a day: factors, sources, and the probability of the actual number.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use novamind_tools::Refusal;
 use novamind_world::identifiers::{Channel, Group};
 use novamind_world::market::leads::LeadFactors;
 
-/// Days that are shown with one: it and the days before it.
+/// Number of days that are shown, including the requested day.
 pub(crate) const WINDOW_DAYS: u32 = 28;
 
 /// A factor of the leads of a group (docs/mechanics/market/leads.md).
@@ -17,7 +17,7 @@ pub(crate) const WINDOW_DAYS: u32 = 28;
 pub enum LeadFactor {
     /// Reputation of the group.
     Reputation,
-    /// Room left in its market.
+    /// Unused share of its market.
     Saturation,
     /// Weekday times day of the month.
     Calendar,
@@ -40,17 +40,17 @@ impl LeadFactor {
         LeadFactor::Surge,
     ];
 
-    /// Its letter in the equation.
+    /// Returns the letter in the equation.
     pub fn letter(self) -> &'static str {
         ["R", "D", "C", "M", "A", "Z"][self as usize]
     }
 
-    /// What it stands for.
+    /// Returns the name.
     pub fn in_words(self) -> &'static str {
-        ["reputation", "room in the market", "calendar", "economy", "own posts", "surges"][self as usize]
+        ["reputation", "unused market", "calendar", "economy", "own posts", "surges"][self as usize]
     }
 
-    /// The factor with this letter.
+    /// Returns the factor with a letter.
     pub fn parse(letter: &str) -> Option<LeadFactor> {
         LeadFactor::ALL.into_iter().find(|factor| factor.letter().eq_ignore_ascii_case(letter))
     }
@@ -80,13 +80,13 @@ pub struct LeadEquation {
     pub group: Group,
     /// The day, from 1.
     pub day: u32,
-    /// Whether the group was discovered; if not, it brought no leads.
+    /// Whether the group was discovered; other groups have no leads.
     pub is_known: bool,
-    /// Leads by word of mouth before the factors, by the group whose subscribers bring them.
+    /// Leads by word of mouth before the factors, by source group.
     pub word_of_mouth: Vec<(Group, f64)>,
-    /// Leads that came.
+    /// Actual leads.
     pub came: u32,
-    /// Whether its market has no size: whatever it holds, there is room.
+    /// Whether the market cap is unlimited.
     pub is_without_limit: bool,
     factors: LeadFactors,
 }
@@ -104,13 +104,13 @@ impl LeadEquation {
         }
     }
 
-    /// A factor of the equation.
+    /// Returns a factor of the equation.
     pub fn factor(&self, factor: LeadFactor) -> f64 {
         let mut factors = self.factors;
         *factor.of(&mut factors)
     }
 
-    /// Leads of paid channels before the factors, those that bring any.
+    /// Returns the leads of paid channels before the factors, for channels that have any.
     pub fn channels(&self) -> impl Iterator<Item = (Channel, f64)> {
         let paid = self.factors.paid;
         Channel::ALL
@@ -119,24 +119,24 @@ impl LeadEquation {
             .filter(|(_, leads)| *leads > 0.0)
     }
 
-    /// Leads by word of mouth before the factors.
+    /// Returns the leads by word of mouth before the factors.
     pub fn by_word_of_mouth(&self) -> f64 {
         self.factors.network
     }
 
-    /// Expected leads: what the day's number was drawn around.
+    /// Returns the expected leads, the mean of the day's draw.
     pub fn expected(&self) -> f64 {
         self.factors.expected()
     }
 
-    /// Expected leads if some factors were others.
+    /// Returns the expected leads with some factors replaced.
     pub fn holding(&self, held: &[(LeadFactor, f64)]) -> f64 {
         let mut factors = self.factors;
         held.iter().for_each(|(factor, value)| *factor.of(&mut factors) = *value);
         factors.expected()
     }
 
-    /// How likely a number at least as far out as the one that came is, two-sided, 0..=1: twice the smaller tail of the
+    /// Returns the two-sided probability, 0..=1, of a number at least as extreme as the actual one: twice the smaller tail of the
     /// Poisson distribution around the expectation.
     pub fn p_value(&self) -> f64 {
         two_sided(self.expected(), self.came)
@@ -144,8 +144,7 @@ impl LeadEquation {
 }
 
 impl Inspector<'_> {
-    /// The leads of a group on a day (the last one if none is named), after those of up to 27 days before it. The look is
-    /// recorded.
+    /// Returns the lead equations of a group on up to 27 previous days and a day, by default the last one. Records the inspection.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
@@ -158,7 +157,7 @@ impl Inspector<'_> {
     }
 }
 
-/// Twice the smaller tail of a Poisson distribution, at most 1; the number itself belongs to both tails.
+/// Returns twice the smaller tail of a Poisson distribution, at most 1. Both tails include `number`.
 fn two_sided(mean: f64, number: u32) -> f64 {
     if mean <= 0.0 {
         return if number == 0 { 1.0 } else { 0.0 };
@@ -167,7 +166,7 @@ fn two_sided(mean: f64, number: u32) -> f64 {
         let k = f64::from(k);
         libm::exp(k * libm::log(mean) - mean - libm::lgamma(k + 1.0))
     };
-    // The small tail is summed itself: what is left of 1 would be rounding.
+    // The small tail is summed directly, because subtraction from 1 would lose precision.
     let tail: f64 = match f64::from(number) > mean {
         true => (number..).map(chance).take_while(|chance| *chance > 0.0).sum(),
         false => (0..=number).map(chance).sum(),

@@ -1,4 +1,4 @@
-//! A customer from within: an individual or a company.
+//! The hidden state of a customer: an individual or an enterprise.
 
 use super::company_lens::CompanyLens;
 use super::customer_lens::CustomerLens;
@@ -6,17 +6,17 @@ use super::inspector::Inspector;
 use novamind_session::Look;
 use novamind_tools::Refusal;
 
-/// A customer from within.
+/// The hidden state of a customer.
 #[derive(Debug, Clone)]
 pub enum Lens {
-    /// Who decides alone.
+    /// An individual.
     Individual(Box<CustomerLens>),
-    /// Who negotiates.
+    /// An enterprise.
     Company(CompanyLens),
 }
 
 impl Inspector<'_> {
-    /// A customer on a day, the last one if none is named. The look is recorded.
+    /// Returns a customer on a day, by default the last one. Records the inspection.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `customer_not_found`, `not_possible`, `not_readable`, `not_saved`.

@@ -1,5 +1,4 @@
-//! The days of a run, simulated again and told one by one with their hidden state: for figures of any run that may be looked
-//! into, one that a person played included.
+//! Re-simulates the days of a run with their hidden state, for daily figures of any run that may be inspected.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -13,10 +12,10 @@ use novamind_session::{Access, DayReport, Look, REFUSED_LOOK, SealKey, Session};
 use novamind_tools::Refusal;
 use novamind_world::day::watch::Unwatched;
 
-/// Opens a run to look into it: a debug run, or one that is over. Nothing but looks is recorded.
+/// Opens a debug run or a finished run for inspection. Only inspections are recorded.
 ///
 /// # Errors
-/// `NotPossible` for any other run, which is not opened then; as [`Session::open`].
+/// `NotPossible` for other runs, which are not opened; as [`Session::open`].
 pub fn open_to_look_inside(folder: &Path, key: SealKey) -> Result<Session, RunError> {
     let mode = manifest_of(folder)?.mode;
     if mode != Mode::Debug && Trajectory::read(&folder.join("trajectory.jsonl"))?.end().is_none() {
@@ -30,7 +29,7 @@ pub fn open_to_look_inside(folder: &Path, key: SealKey) -> Result<Session, RunEr
 }
 
 impl Inspector<'_> {
-    /// Tells every day of the run again, with its hidden state. The look is recorded.
+    /// Re-simulates every day of the run for an observer. Records the inspection.
     ///
     /// # Errors
     /// `not_in_this_mode`, `not_possible`, `not_readable`, `not_saved`.

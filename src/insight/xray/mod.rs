@@ -1,7 +1,7 @@
-//! The x-ray: hidden state of debug runs, and of runs that are over (docs/debugging.md).
+//! The x-ray: hidden state of debug runs and finished runs (docs/debugging.md).
 //!
-//! Past days are simulated again beside the run, and watched on the way: what is shown is what the functions of the
-//! world were given and what they said, never a second calculation. Each look is a line of the trajectory.
+//! Past days are re-simulated separately from the run and observed. The views show inputs and results of the simulator's functions,
+//! never a second calculation. Each inspection is an event of the trajectory.
 
 pub(crate) mod breakpoint;
 pub(crate) mod company_day;

@@ -1,5 +1,5 @@
-//! The next draws of a part of the world. Streams are keyed and keep no state: what a part will draw on the next day is
-//! known before the day, as far as nothing decides on it that is still open.
+//! The next draws of a part of the world. Streams are keyed and keep no state, so the draws of the next day are known in advance,
+//! unless they depend on open decisions.
 
 use super::inspector::Inspector;
 use novamind_session::{Look, Xray};
@@ -14,26 +14,26 @@ use novamind_world::random::{Part, word_below};
 use novamind_world::retention::due_today;
 use novamind_world::retention::renewal::{involuntary_rate_of, payment_rolls};
 
-/// A part of the world whose next draws can be told.
+/// A part of the world whose next draws can be inspected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DrawnPart {
     /// Numbers of leads.
     Leads,
-    /// Payments that fail on a billing day.
+    /// Failed payments.
     Renewals,
     /// Outage, its length, latency, errors.
     Service,
-    /// Daily noise of the shared quality.
+    /// Daily noise of shared quality.
     Quality,
-    /// R&D projects that would be started.
+    /// R&D projects.
     Research,
     /// The next attempt of market research.
     Discovery,
     /// Demand surges.
     Surge,
-    /// The index of the economy.
+    /// Index of the economy.
     Economy,
-    /// Rivals.
+    /// Competitors.
     Rivals,
 }
 
@@ -51,18 +51,18 @@ impl DrawnPart {
         DrawnPart::Rivals,
     ];
 
-    /// Its name.
+    /// Returns the name.
     pub fn id(self) -> &'static str {
         ["leads", "renewals", "service", "quality", "research", "discovery", "surge", "economy", "rivals"]
             [self as usize]
     }
 
-    /// The part with this name.
+    /// Returns the part with a name.
     pub fn parse(id: &str) -> Option<DrawnPart> {
         DrawnPart::ALL.into_iter().find(|part| part.id() == id)
     }
 
-    /// The random streams it draws from, and how many draws it makes at most.
+    /// Returns the random streams of the part, and the maximum number of draws of each.
     fn stream(self) -> (Part, usize) {
         match self {
             DrawnPart::Leads => (Part::LeadCount, 2),
@@ -84,7 +84,7 @@ impl DrawnPart {
     }
 }
 
-/// One word of a stream, as the distributions read it.
+/// One draw of a stream.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Draw {
     /// As a uniform number, in [0, 1).
@@ -93,48 +93,48 @@ pub struct Draw {
     pub normal: f64,
 }
 
-/// What follows from the draws of a stream.
+/// The consequence of the draws of a stream.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Follows {
-    /// So many leads would come if as many were expected as on the last day.
+    /// Number of leads, if the expectation equals that of the last day.
     Leads {
         /// Leads expected on the last day.
         expected: f64,
-        /// Leads that would come.
+        /// Resulting leads.
         number: u32,
     },
-    /// Payments fail at this rate, and on the day those of these customers do.
+    /// Failed payments.
     FailedPayments {
-        /// Share of the payments of the month.
+        /// Rate of failed payments in the month.
         rate: f64,
-        /// Customer numbers.
+        /// Numbers of the customers whose payment fails on the day.
         customers: Vec<u32>,
     },
-    /// There is an outage if its chance is above this.
+    /// Outage probability above which an outage occurs.
     OutageAbove(f64),
-    /// Noise added to the shared quality.
+    /// Noise of shared quality.
     Noise(f64),
     /// An R&D project of the tier.
     Project {
         /// Tier, 1..=20.
         tier: u8,
-        /// How long it takes.
+        /// Duration, days.
         days: u32,
-        /// Quality it adds.
+        /// Quality gain.
         gain: f64,
     },
-    /// The group that is found, if any.
+    /// The discovered group, if any.
     Found(Option<Group>),
     /// A demand surge, if there is one.
     Surge(Option<Surge>),
-    /// The index of the economy.
+    /// Index of the economy.
     Index {
-        /// Today's.
+        /// Current value.
         before: f64,
-        /// The next day's.
+        /// Value of the next day.
         after: f64,
     },
-    /// A move of rivals, if they make one: its size before copying, and the share of the shared bank that they can copy.
+    /// A competitor move, if there is one: its size before copying, and the share of the shared bank that can be copied.
     RivalMove(Option<(f64, f64)>),
 }
 
@@ -143,13 +143,13 @@ pub enum Follows {
 pub struct KeyedDraws {
     /// Name of the stream (docs/mechanics/randomness.md).
     pub stream: &'static str,
-    /// What it is keyed by.
+    /// Keys of the stream.
     pub key: Vec<(&'static str, u64)>,
-    /// The group whose draws they are, if they are those of one.
+    /// The group of the stream, if any.
     pub group: Option<Group>,
-    /// Its first draws.
+    /// First draws.
     pub draws: Vec<Draw>,
-    /// What follows from them.
+    /// Consequence of the draws.
     pub follows: Follows,
 }
 
@@ -158,24 +158,25 @@ pub struct KeyedDraws {
 pub struct NextDraws {
     /// The part.
     pub part: DrawnPart,
-    /// The day that will draw them.
+    /// Day of the draws.
     pub day: u32,
-    /// Whether the run is over, so that the day will not come.
+    /// Whether the run has ended, so that the day will not be simulated.
     pub is_over: bool,
-    /// Whether a recorded series is replayed in place of these draws, where it reaches.
+    /// Whether a recorded series replaces these draws on the days that it covers.
     pub is_replayed: bool,
     /// The streams.
     pub streams: Vec<KeyedDraws>,
 }
 
-/// Most draws of a stream that are told.
+/// Maximum number of draws of a stream.
 pub const MOST_DRAWS: usize = 1000;
 
 impl Inspector<'_> {
-    /// The next draws of a part: so many of each stream, or as many as the part makes at most. The look is recorded.
+    /// Returns the next draws of a part. `count` limits the draws of each stream; the default is the maximum of the part. Records
+    /// the inspection.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `not_saved`, `out_of_range`: none, or more than [`MOST_DRAWS`].
+    /// `not_in_this_mode`, `not_saved`, `out_of_range` if `count` is 0 or more than [`MOST_DRAWS`].
     pub fn next_draws(&mut self, part: DrawnPart, count: Option<usize>) -> Result<NextDraws, Refusal> {
         self.run.refuse_to_look_inside()?;
         let (_, usual) = part.stream();
@@ -272,7 +273,7 @@ fn leads_of(inside: Xray<'_>, group: Group, day: u32) -> Follows {
     Follows::Leads { expected, number }
 }
 
-/// Those whose payment fails if it is due: the roll of each stands at its place in its block.
+/// Returns the customers whose payment fails if it is due. The roll of each customer has its position in the block.
 fn failed_payments(inside: Xray<'_>, group: Group, day: u32) -> Follows {
     let (params, streams) = (inside.params(), inside.streams());
     let rate = involuntary_rate_of(group, day, params, streams);

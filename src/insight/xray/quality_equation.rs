@@ -1,4 +1,4 @@
-//! What the product delivers to a group on each plan, term by term.
+//! The quality equation: the quality that is delivered to a group on each plan, by term.
 
 use serde::Serialize;
 
@@ -12,31 +12,31 @@ use novamind_world::quality::delivered_quality;
 use novamind_world::settings::Settings;
 use novamind_world::state::World;
 
-/// Where the quality that was gained for everybody comes from.
+/// Sources of shared quality.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct SharedGains {
-    /// What the run began with.
+    /// Initial quality.
     pub opening: f64,
     /// Finished R&D projects.
     pub research: f64,
-    /// Development, day by day.
+    /// Sum of the daily gains of development.
     pub development: f64,
-    /// Its daily noise, the rest.
+    /// Daily noise, the remainder.
     pub noise: f64,
 }
 
-/// A plan, as it is delivered.
+/// The delivered quality of a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PlanDelivered {
     /// Model tier, 1..=5.
     pub tier: u8,
     /// Quality multiplier of the tier.
     pub multiplier: f64,
-    /// Quality that the world delivered.
+    /// Delivered quality.
     pub delivered: f64,
 }
 
-/// What quality is made of on a day, for all groups.
+/// The components of quality on a day, for all groups.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct QualityDay {
     base: f64,
@@ -53,7 +53,7 @@ pub(crate) struct QualityDay {
 }
 
 impl QualityDay {
-    /// A morning, after so much development; counts the development of the day.
+    /// Captures the start of a day after the accumulated gain of development, and adds the gain of the day.
     pub(crate) fn of(world: &World, morning: &Morning, params: &Params, development: &mut f64) -> QualityDay {
         let World { product, settings, market, .. } = world;
         let gains = shared_gains(product, *development, params);
@@ -93,7 +93,7 @@ fn shared_gains(product: &Product, development: f64, params: &Params) -> SharedG
     SharedGains { opening, research, development, noise }
 }
 
-/// The quality that is delivered to a group: (base + shared + own) times the multiplier of the plan's model tier.
+/// The delivered quality of a group: (base + shared + own) times the multiplier of the plan's model tier.
 #[derive(Debug, Clone, PartialEq)]
 pub struct QualityEquation {
     /// The group.
@@ -102,28 +102,27 @@ pub struct QualityEquation {
     pub day: u32,
     /// Quality before any improvement.
     pub base: f64,
-    /// Gained for everybody.
+    /// Shared gain.
     pub shared: f64,
-    /// Where that comes from.
+    /// Sources of the shared gain.
     pub gains: SharedGains,
-    /// Gained for the group by targeted development.
+    /// Gain of the group by targeted development.
     pub own: f64,
     /// The plans.
     pub plans: ByPlan<PlanDelivered>,
-    /// Lost to the service of the day, for those who feel it.
+    /// Quality lost to the service of the day, for decisions that include it.
     pub service_penalty: f64,
-    /// Shared improvements that no rival had copied in the morning.
+    /// Shared improvements that competitors had not copied at the start of the day.
     pub shared_bank: f64,
-    /// The same of the group's own.
+    /// The group's improvements that competitors had not copied at the start of the day.
     pub own_bank: f64,
-    /// What the market has added to everyone's expectations.
+    /// Common addition to expectations.
     pub everyone: f64,
-    /// What it has added to those of the group, everyone's included.
+    /// Addition to expectations of the group, including the common one.
     pub expectation: Expectation,
 }
 
 impl QualityEquation {
-    /// The group on a day.
     pub(crate) fn of(group: Group, day: u32, seen: &QualityDay) -> QualityEquation {
         QualityEquation {
             group,
@@ -141,7 +140,7 @@ impl QualityEquation {
         }
     }
 
-    /// What the terms come to with a multiplier.
+    /// Returns the sum of the terms times a multiplier.
     pub fn product(&self, multiplier: f64) -> f64 {
         delivered_quality(self.base, self.shared, self.own, multiplier)
     }

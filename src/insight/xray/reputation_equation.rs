@@ -1,4 +1,4 @@
-//! What moved the reputation of a group on a day, and how the change of each group spilled over to the others.
+//! The reputation equation of a group on a day, and the spillover of changes between groups.
 
 use serde::Serialize;
 
@@ -9,50 +9,49 @@ use novamind_world::reputation::{
     Mood, ReputationBook, ReputationCause, ReputationWrite, Spill, called_change, daily_change, spill,
 };
 
-/// Departures of a day and what they took.
+/// The cancellations of a day and their effect.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Departures {
-    /// How many did harm; lost companies count for each of their threads.
+    /// Number of cancellations with an effect; a lost enterprise counts once for each thread.
     pub count: u32,
-    /// What they did to the reputation; not positive.
+    /// Change of the reputation; not positive.
     pub change: f64,
 }
 
-/// What the subscribers of a group contributed.
+/// The contribution of a group's subscribers.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct OwnChange {
-    /// How many they were.
+    /// Number of subscribers.
     pub subscribers: u32,
-    /// The change that their satisfaction called for.
+    /// Change by their satisfaction before the threshold.
     pub called: f64,
-    /// Whether it was large enough to be made.
+    /// Whether the change reached the threshold and was applied.
     pub counts: bool,
 }
 
 impl OwnChange {
-    /// The change that was made.
+    /// Returns the applied change.
     pub fn made(&self) -> f64 {
         if self.counts { self.called } else { 0.0 }
     }
 }
 
-/// Below what a change is dropped.
+/// Thresholds below which changes are dropped.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LeastChanges {
-    /// A contribution below it, in size.
+    /// A contribution is dropped if its absolute value is below this.
     pub own: f64,
-    /// A spill up to it, in size.
+    /// A spillover is dropped if its absolute value is not above this.
     pub spill: f64,
 }
 
-/// Reputations of all groups on a day.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ReputationDay {
     before: ByGroup<f64>,
     gave_up: ByGroup<Departures>,
     lost: ByGroup<Departures>,
     own: ByGroup<OwnChange>,
-    /// Where there is a weight, in the order in which they were made.
+    /// Spillovers with a weight, in order.
     spills: Vec<Spill>,
     bounds: ByGroup<f64>,
     after: ByGroup<f64>,
@@ -60,12 +59,11 @@ pub(crate) struct ReputationDay {
 }
 
 impl ReputationDay {
-    /// A day that finds these reputations.
     pub(crate) fn in_the_morning(book: &ReputationBook) -> ReputationDay {
         ReputationDay { before: ByGroup::from_fn(|group| book.of(group)), ..ReputationDay::default() }
     }
 
-    /// Counts what a mechanism wrote.
+    /// Adds a write of a mechanism.
     pub(crate) fn count(&mut self, write: &ReputationWrite<'_>) {
         let group = write.group;
         let without_bounds = write.changes.iter().fold(write.before, |value, change| value + change);
@@ -79,7 +77,7 @@ impl ReputationDay {
         departures.change += write.changes.iter().sum::<f64>();
     }
 
-    /// Ends with what subscribers contributed, what is dropped of it as well.
+    /// Adds the contributions of subscribers, including dropped ones.
     pub(crate) fn settle(&mut self, moods: &ByGroup<Mood>, market: &Market, params: &Params) {
         let law = &params.reputation;
         self.least = LeastChanges { own: law.daily_delta_min_abs, spill: law.cross_delta_min_abs };
@@ -103,28 +101,27 @@ pub struct ReputationEquation {
     pub group: Group,
     /// The day, from 1.
     pub day: u32,
-    /// Reputation in the morning.
+    /// Reputation at the start of the day.
     pub before: f64,
-    /// Individuals who found nothing acceptable.
+    /// Cancellations of individuals without an acceptable plan.
     pub gave_up: Departures,
-    /// Companies that were lost.
+    /// Lost enterprises.
     pub lost: Departures,
-    /// What its subscribers contributed.
+    /// Contribution of its subscribers.
     pub own: OwnChange,
-    /// What changes of other groups did to it, or would have done had they not been dropped.
+    /// Spillovers from other groups, including dropped ones.
     pub spills: Vec<Spill>,
-    /// What the floor and the ceiling added.
+    /// Effect of the lower and upper limit.
     pub bounds: f64,
-    /// Reputation in the evening.
+    /// Reputation at the end of the day.
     pub after: f64,
-    /// That of the evenings up to this one, at most 28, the first one first.
+    /// Reputation at the end of up to 28 days, in ascending order; this day is last.
     pub evenings: Vec<f64>,
-    /// Below what changes are dropped.
+    /// Thresholds below which changes are dropped.
     pub least: LeastChanges,
 }
 
 impl ReputationEquation {
-    /// The group on a day, with its reputation of evenings.
     pub(crate) fn of(group: Group, day: u32, seen: &ReputationDay, evenings: Vec<f64>) -> ReputationEquation {
         ReputationEquation {
             group,
@@ -141,37 +138,36 @@ impl ReputationEquation {
         }
     }
 
-    /// What the terms come to.
+    /// Returns the sum of the terms.
     pub fn sum(&self) -> f64 {
         let spills: f64 = self.spills.iter().filter(|spill| spill.counts).map(|spill| spill.change).sum();
         self.before + self.gave_up.change + self.lost.change + self.own.made() + spills + self.bounds
     }
 }
 
-/// How the changes of a day spilled over: from each known group to each other one.
+/// The spillover of a day between discovered groups.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spillover {
     /// The day, from 1.
     pub day: u32,
-    /// The groups that were known.
+    /// Discovered groups.
     pub known: Vec<Group>,
-    /// What the subscribers of each group contributed.
+    /// Contribution of each group's subscribers.
     pub own: ByGroup<OwnChange>,
-    /// Spills where there is a weight, those that were dropped too.
+    /// Spillovers with a weight, including dropped ones.
     pub spills: Vec<Spill>,
-    /// Below what changes are dropped.
+    /// Thresholds below which changes are dropped.
     pub least: LeastChanges,
 }
 
 impl Spillover {
-    /// A day on which some groups were known.
     pub(crate) fn of(day: u32, known: &ByGroup<bool>, seen: ReputationDay) -> Spillover {
         let known = Group::all().filter(|group| known[*group]).collect();
         let ReputationDay { own, spills, least, .. } = seen;
         Spillover { day, known, own, spills, least }
     }
 
-    /// What the change of a group did to another one; none without a weight or a change.
+    /// Returns the spillover from one group to another; `None` without a weight or a change.
     pub fn between(&self, from: Group, to: Group) -> Option<Spill> {
         self.spills.iter().copied().find(|spill| spill.from == from && spill.to == to)
     }
@@ -198,7 +194,7 @@ mod tests {
             step_day_watched(world, &params, &streams, &Held::default(), &mut facts, &diary);
         };
         (0..80).for_each(|_| day(&mut world));
-        // Nothing is delivered any more, and prices rise: everybody is unhappy, and many leave.
+        // Zero quality and higher prices cause low satisfaction and many cancellations.
         world.settings.core.prices.0 = [90.0, 190.0, 390.0];
         world.settings.core.capacity_tier = 0;
         (0..30).for_each(|_| day(&mut world));

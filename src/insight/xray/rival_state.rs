@@ -1,4 +1,4 @@
-//! Rivals from within: what they could copy, what they did, and the move that is decided next.
+//! The hidden state of competitors: what they can copy, their moves, and the next move.
 
 use super::hidden_day::Banks;
 use super::inspector::Inspector;
@@ -8,54 +8,54 @@ use novamind_world::events::Severity;
 use novamind_world::identifiers::{ByGroup, Group};
 use novamind_world::market::competitors::{Event, next_move, severity};
 
-/// The next move of rivals after a day.
+/// The next competitor move after a day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NextRivalMove {
-    /// Its day.
+    /// Day of the move.
     pub day: u32,
-    /// Size that is drawn, after the growth over the run.
+    /// Drawn size, after the growth over the run.
     pub sampled: f64,
-    /// Share of the shared bank that they can copy.
+    /// Share of the shared bank that can be copied.
     pub u: f64,
-    /// Share of each targeted bank of the evening that they copy; empty once the move was made.
+    /// Share of each targeted bank at the end of the day that is copied; empty after the move.
     pub shares: Vec<(Group, f64)>,
-    /// What came of it, if the day has been simulated.
+    /// Outcome, if the day has been simulated.
     pub made: Option<Event>,
 }
 
 impl NextRivalMove {
-    /// What they could copy of a shared bank: it applies if it is larger than the size that is drawn.
+    /// Returns the quality that can be copied from a shared bank. It applies if it exceeds the drawn size.
     pub fn copied(&self, bank: f64) -> f64 {
         self.u * bank
     }
 
-    /// The shared bank above which they copy.
+    /// Returns the shared bank above which competitors copy.
     pub fn copies_above(&self) -> f64 {
         self.sampled / self.u
     }
 }
 
-/// Rivals on the evening of a day.
+/// Competitors at the end of a day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RivalState {
     /// The day, from 1.
     pub day: u32,
-    /// Quality gained for everybody.
+    /// Shared quality gain.
     pub shared_bonus: f64,
-    /// What no rival has copied of it.
+    /// Part of it that is not copied.
     pub shared_bank: f64,
-    /// Quality gained for single groups, and what no rival has copied of it; those that have any.
+    /// Targeted quality gain and the part of it that is not copied, for groups that have any.
     pub own: Vec<(Group, f64, f64)>,
-    /// What rivals and drift have added to everyone's expectations.
+    /// Common addition to expectations by competitors and drift.
     pub everyone: f64,
-    /// Moves so far, each with what it is called.
+    /// Past moves with their names.
     pub moves: Vec<(Event, Severity)>,
-    /// The next one; none before the end of the run.
+    /// Next move; `None` if there is none before the end of the run.
     pub next: Option<NextRivalMove>,
 }
 
 impl Inspector<'_> {
-    /// Rivals on the evening of a day, the last one if none is named. The look is recorded.
+    /// Returns the competitors at the end of a day, by default the last one. Records the inspection.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
@@ -81,7 +81,7 @@ impl Inspector<'_> {
     }
 }
 
-/// The move after a day: the one that was made, or the one that is decided under the parameters in force.
+/// Returns the next move after a day: the simulated one, or the one that follows from the current parameters.
 pub(super) fn rival_move_after(inside: Xray<'_>, day: u32, banks: &ByGroup<f64>) -> Option<NextRivalMove> {
     let (world, params) = (inside.world(), inside.params());
     let events = &world.market.competitors;

@@ -1,4 +1,4 @@
-//! What moved the mean satisfaction of a group on a day: the terms of the mechanism, each as a mean over its subscribers.
+//! The satisfaction equation of a group on a day: the terms of the mechanism, each as a mean over the subscribers.
 
 use std::collections::BTreeMap;
 use std::ops::AddAssign;
@@ -8,16 +8,16 @@ use novamind_world::customers::columns::Block;
 use novamind_world::identifiers::{ByGroup, Group};
 use novamind_world::retention::satisfaction::{FeltDay, felt};
 
-/// A term of what a subscriber feels today (docs/mechanics/retention/satisfaction.md).
+/// A term of instant satisfaction (docs/mechanics/retention/satisfaction.md).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MoodTerm {
-    /// Quality delivered, before the service of the day.
+    /// Delivered quality, before the service of the day.
     Delivered,
     /// Overload and outages.
     Service,
-    /// The relationship, good or bad.
+    /// Relationship, positive or negative.
     Relationship,
-    /// Time subscribed.
+    /// Tenure.
     Tenure,
     /// A quota below the demand.
     Quota,
@@ -25,14 +25,14 @@ pub enum MoodTerm {
     Issues,
     /// In-app ads.
     Ads,
-    /// What the price requires.
+    /// Required quality at the price.
     Required,
-    /// What the market adds to that.
+    /// The market's addition to required quality.
     Expectations,
 }
 
 impl MoodTerm {
-    /// All terms, in the order in which they are shown.
+    /// All terms in display order.
     pub const ALL: [MoodTerm; 9] = [
         MoodTerm::Delivered,
         MoodTerm::Service,
@@ -45,7 +45,7 @@ impl MoodTerm {
         MoodTerm::Expectations,
     ];
 
-    /// Its name.
+    /// Returns the name.
     pub fn id(self) -> &'static str {
         [
             "delivered",
@@ -60,7 +60,7 @@ impl MoodTerm {
         ][self as usize]
     }
 
-    /// What it adds for a subscriber; the terms together are its instant satisfaction.
+    /// Returns the value of the term for each subscriber. The sum of the terms is instant satisfaction.
     fn of(self, felt: &FeltDay) -> f64 {
         let own = &felt.experience;
         match self {
@@ -68,7 +68,7 @@ impl MoodTerm {
             MoodTerm::Service => 0.0 - felt.service_penalty,
             MoodTerm::Relationship => own.relationship,
             MoodTerm::Tenure => own.tenure,
-            // What is missing to the sum of the others, whatever the quota multiplies.
+            // The remainder to the sum of all other terms, because the quota is a factor of several terms.
             MoodTerm::Quota => {
                 felt.perceived - (own.delivered + own.relationship + own.tenure - own.issues - own.ads)
             }
@@ -91,7 +91,7 @@ pub(crate) struct MoodSums {
 }
 
 impl MoodSums {
-    /// A block whose satisfaction is about to move.
+    /// Sums a block before its satisfaction changes.
     pub(crate) fn of(group: Group, block: &Block, day: &DayContext<'_>) -> MoodSums {
         let mut sums = MoodSums { count: block.len() as u32, ..MoodSums::default() };
         for at in 0..block.len() {
@@ -119,7 +119,6 @@ impl AddAssign for MoodSums {
     }
 }
 
-/// The satisfaction of a group on a day.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct SatisfactionDay {
     sums: MoodSums,
@@ -127,11 +126,11 @@ pub(crate) struct SatisfactionDay {
     weight: f64,
 }
 
-/// The blocks of a day, which come in any order.
+/// Sums of a day's blocks, in any order.
 pub(crate) type MoodsByBlock = BTreeMap<(Group, u32), MoodSums>;
 
 impl SatisfactionDay {
-    /// All groups, from the sums of their blocks and who left; `weight` is that of a day.
+    /// Combines the blocks of all groups with their cancellations. `weight` is the weight of a day.
     pub(crate) fn by_group(
         blocks: &MoodsByBlock,
         left: &ByGroup<u32>,
@@ -155,23 +154,23 @@ pub struct SatisfactionEquation {
     pub day: u32,
     /// Weight of a day, 0..=1.
     pub weight: f64,
-    /// Individuals and companies that left in the course of the day.
+    /// Number of individuals and enterprises that cancelled on the day.
     pub left: u32,
-    /// Subscribers that came on the day; they have not felt it.
+    /// Number of new subscribers of the day, who are not in the mean.
     pub came: u32,
-    /// Subscribers in the evening.
+    /// Number of subscribers at the end of the day.
     pub subscribers: u32,
-    /// Their mean satisfaction; none without any.
+    /// Their mean satisfaction; `None` without subscribers.
     pub evening: Option<f64>,
-    /// That of the evenings up to this one, at most 28, the first one first; none where there were no subscribers.
+    /// Mean satisfaction at the end of up to 28 days, in ascending order; this day is last. `None` without subscribers.
     pub evenings: Vec<Option<f64>>,
     seen: SatisfactionDay,
     yesterday: Option<SatisfactionDay>,
 }
 
 impl SatisfactionEquation {
-    /// The group on a day, its subscribers in the evening with their mean satisfaction, how it was on the day before, and
-    /// the mean satisfaction of evenings.
+    /// Creates the equation of a group on a day from its subscribers at the end of the day with their mean satisfaction, the
+    /// day before, and the mean satisfaction of recent days.
     pub(crate) fn of(
         group: Group,
         day: u32,
@@ -194,32 +193,32 @@ impl SatisfactionEquation {
         }
     }
 
-    /// Subscribers that felt the day.
+    /// Returns the number of subscribers in the mean.
     pub fn felt_by(&self) -> u32 {
         self.seen.sums.count
     }
 
-    /// Their mean satisfaction before the day; none without any.
+    /// Returns their mean satisfaction before the day; `None` without subscribers.
     pub fn before(&self) -> Option<f64> {
         mean(self.seen.sums.before, self.seen.sums.count)
     }
 
-    /// Their mean satisfaction after it.
+    /// Returns their mean satisfaction after the day.
     pub fn after(&self) -> Option<f64> {
         mean(self.seen.sums.after, self.seen.sums.count)
     }
 
-    /// Mean of what they felt on the day alone: the sum of the terms.
+    /// Returns their mean instant satisfaction, the sum of the terms.
     pub fn instant(&self) -> Option<f64> {
         mean(self.seen.sums.instant, self.seen.sums.count)
     }
 
-    /// Mean of a term.
+    /// Returns the mean of a term.
     pub fn term(&self, term: MoodTerm) -> Option<f64> {
         mean(self.seen.sums.terms[term as usize], self.seen.sums.count)
     }
 
-    /// Mean of a term on the day before, among those who felt that day.
+    /// Returns the mean of a term on the day before, over the subscribers of that day.
     pub fn term_yesterday(&self, term: MoodTerm) -> Option<f64> {
         let sums = self.yesterday?.sums;
         mean(sums.terms[term as usize], sums.count)

@@ -1,4 +1,4 @@
-//! `hidden.*`: what is hidden as tables, beside those of the company (docs/formats/hidden-tables.md).
+//! The hidden tables `hidden.*`, together with the visible tables (docs/formats/hidden-tables.md).
 
 use super::hidden_tables::{CUSTOMERS, HiddenTables, ShownCustomers, THREADS};
 use super::inspector::Inspector;
@@ -7,8 +7,8 @@ use novamind_session::{Look, query_refusal};
 use novamind_tools::Refusal;
 
 impl Inspector<'_> {
-    /// Answers a statement that may read the hidden tables. `hidden.customers` shows a day, the last one if none is named;
-    /// all others have every day. The look is recorded.
+    /// Runs a statement that may read hidden tables. `hidden.customers` contains one day, by default the last one; all others
+    /// contain every day. Records the inspection.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`, the `sql_` codes.
@@ -17,16 +17,16 @@ impl Inspector<'_> {
         self.xray_query_as(ticket, sql, day)
     }
 
-    /// The same under a ticket of [`Inspector::xray_interrupt`] that was drawn when the statement was asked for.
+    /// Runs a statement like [`Inspector::xray_query`] with a ticket of [`Inspector::xray_interrupt`] from the time of the request.
     ///
     /// # Errors
     /// As [`Inspector::xray_query`].
     pub fn xray_query_as(&mut self, ticket: Ticket, sql: &str, day: Option<u32>) -> Result<Rows, Refusal> {
         let look = Look::begin(self.run, "sql", sql, day)?;
-        // Tables that went wrong are not kept: the next look begins anew.
+        // After an error, the next inspection rebuilds the tables.
         let mut tables = self.take_hidden_tables()?;
         let named = tables.connection().hidden_tables_in(sql);
-        // One diary serves all tables: the days are simulated once.
+        // One recorder for all tables: the days are simulated only once.
         let keeps_threads = self.own.diary.keeps_threads() || named.iter().any(|table| table.name == THREADS);
         for table in named {
             match table.name.as_str() {
@@ -40,10 +40,10 @@ impl Inspector<'_> {
         answer.map_err(query_refusal)
     }
 
-    /// A handle that stops the running statement on hidden tables.
+    /// Returns a handle that stops the running statement on hidden tables.
     ///
     /// # Errors
-    /// `not_in_this_mode`; the run has no database.
+    /// `not_in_this_mode`, or an error if the run has no database.
     pub fn xray_interrupt(&mut self) -> Result<Interrupt, Refusal> {
         self.run.refuse_to_look_inside()?;
         let tables = self.take_hidden_tables()?;
@@ -51,7 +51,7 @@ impl Inspector<'_> {
     }
 
     fn take_hidden_tables(&mut self) -> Result<HiddenTables, Refusal> {
-        // The tables of the company are to hold everything up to now, as they do for any other statement.
+        // The visible tables must be complete, as for any other statement.
         self.run.complete_database()?;
         let database = self.run.database().replaced();
         match self.own.hidden_tables.take().filter(|tables| tables.database() == database) {
@@ -59,7 +59,7 @@ impl Inspector<'_> {
             None => {
                 let tables = HiddenTables::behind(Look::hidden_tables(self.run)?, database);
                 if self.own.diary.keeps_threads() {
-                    // Those of its days were handed over to tables that are gone.
+                    // The threads of its days were moved to tables that no longer exist.
                     self.own.shadow = None;
                 }
                 Ok(tables)

@@ -1,4 +1,4 @@
-//! What the views show is what the world used: equations beside a recorded run, draws beside the days that made them.
+//! Views show the values that the simulator used: equations of a recorded run, and draws of simulated days.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -30,10 +30,9 @@ use novamind_world::random::{Part, Streams};
 use novamind_world::retention::renewal::RenewalContext;
 use novamind_world::state::World;
 
-/// Days and groups that are compared.
 const DAYS: [u32; 8] = [1, 2, 31, 62, 66, 91, 98, 119];
 
-/// The recorded company that uses every lever, in a folder of its own.
+/// Opens a copy of the recorded run that uses every setting.
 fn recorded_run(place: &Path) -> Session {
     let from = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/recorded/everything");
     let folder = place.join("everything");
@@ -44,17 +43,17 @@ fn recorded_run(place: &Path) -> Session {
     Session::open(&folder, Access::Write, true).expect("it opens")
 }
 
-/// A day of the world itself.
+/// Values of a day, observed in the simulator.
 #[derive(Clone, Default)]
 struct UsedDay {
     delivered: ByGroup<ByPlan<f64>>,
     expectations: ByGroup<Expectation>,
     service_penalty: f64,
-    /// Satisfaction of everybody once it has moved, block by block.
+    /// Satisfaction of all subscribers after its change, by block.
     moved: BTreeMap<(Group, u32), Vec<f64>>,
     evening: ByGroup<Vec<f64>>,
     reputation: ByGroup<f64>,
-    /// Departures that do harm.
+    /// Cancellations with an effect on reputation.
     gave_up: ByGroup<u32>,
     shared: (f64, f64),
     own: ByGroup<(f64, f64)>,
@@ -62,7 +61,7 @@ struct UsedDay {
     events: Vec<Event>,
 }
 
-/// Sees what the world uses, beside the diary.
+/// Observes the values that the simulator uses, independently of the recorder.
 #[derive(Default)]
 struct Used {
     today: Mutex<UsedDay>,
@@ -102,7 +101,7 @@ impl DayWatch for Used {
     }
 }
 
-/// The recorded run, and its days as the world used them, day 1 first.
+/// Returns the recorded run and its observed days from day 1.
 fn run_and_days(place: &Path) -> (Session, Vec<UsedDay>) {
     let mut session = recorded_run(place);
     let used = Arc::new(Used::default());
@@ -136,7 +135,7 @@ fn the_equation_of_quality_comes_to_what_was_delivered_bit_for_bit() {
             assert_eq!(own.service_penalty.to_bits(), used.service_penalty.to_bits());
             let gains = own.gains;
             near(gains.opening + gains.research + gains.development + gains.noise, own.shared);
-            // Noise of a day has a standard deviation of 0.001.
+            // The noise of a day has a standard deviation of 0.001.
             assert!(gains.noise.abs() < 0.005 * f64::from(day).sqrt(), "{gains:?}");
             researched += u32::from(gains.research > 0.0);
         }
@@ -226,7 +225,7 @@ fn rivals_and_drift_are_those_of_the_world_and_the_next_move_is_the_one_that_com
         assert_eq!(moves, used.events);
         let coming = last.iter().find(|event| event.day > day);
         assert_eq!(rivals.next.as_ref().and_then(|next| next.made), coming.copied());
-        // What is decided on the day is what came.
+        // The fixed next move equals the simulated one.
         let look = Look::begin(&mut session, "streams", "rivals", None).expect("a look");
         let (params, streams) = (look.inside(&session).params(), look.inside(&session).streams());
         let last_event = used.events.last().map(|event| event.day);
@@ -238,14 +237,14 @@ fn rivals_and_drift_are_those_of_the_world_and_the_next_move_is_the_one_that_com
         let group = |group: Group| drift.groups[group.index()];
         assert!(Group::all().all(|own| group(own).expectation == used.drift.expectation(own)));
         let Some(next) = drift.next_day else { continue };
-        // Budgets move by drift alone.
+        // Budgets change only by drift.
         let [eve, after] = [next - 1, next].map(|day| &days[day as usize - 1].drift.c_max);
         assert_eq!(*eve, used.drift.c_max, "nothing drifts between days {day} and {next}");
         assert!(Group::all().all(|own| after[own] == eve[own] + group(own).step.c_max));
     }
 }
 
-/// A debug run in memory with subscribers and development.
+/// Creates a debug run in memory with subscribers and development.
 fn run_in_memory(seed: u64) -> Session {
     let new = NewRun {
         seed: Some(seed),
@@ -272,12 +271,11 @@ fn run_in_memory(seed: u64) -> Session {
     session
 }
 
-/// The hidden state of a debug run.
+/// Returns the hidden state of a debug run.
 fn inside(session: &Session) -> Xray<'_> {
     session.xray().expect("a debug run")
 }
 
-/// Days whose draws are compared.
 const DRAWN_DAYS: u32 = 150;
 
 #[test]
@@ -413,7 +411,7 @@ fn what_is_bought_next_is_what_was_told_of_it() {
             assert_eq!(told.streams[0].follows, Follows::Found(new));
             found += u32::from(new.is_some());
         }
-        // Until both projects are finished.
+        // Wait until both projects are finished.
         for _ in 0..45 {
             session.step(1, &mut |_| {}).expect("a day");
         }

@@ -1,4 +1,4 @@
-//! A decision of an individual, term by term, and the terms without which it would have come out otherwise.
+//! The decision of an individual by term, and the terms without which it would have been different.
 
 use serde::Serialize;
 
@@ -8,7 +8,7 @@ use novamind_world::params::Params;
 use novamind_world::quality::Experience;
 use novamind_world::retention::weighing::Weighing;
 
-/// A plan, as an individual sees it on a billing day.
+/// A plan, as an individual evaluates it on a billing day.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct PlanTerms {
     /// Price after the ongoing discount, dollars a month.
@@ -18,36 +18,36 @@ pub struct PlanTerms {
     pub experience: Experience,
     /// Perceived quality.
     pub quality: f64,
-    /// Quality required at the price.
+    /// Required quality at the price.
     pub required: f64,
-    /// Quality beyond what is required.
+    /// Surplus: perceived minus required quality.
     pub surplus: f64,
-    /// Whether the price is within the budget; acceptable is a surplus of at least 0 within it.
+    /// Whether the price is within the budget. A plan is acceptable if it is and the surplus is at least 0.
     pub within_budget: bool,
 }
 
-/// Something that goes into a decision and could have been otherwise.
+/// An input of a decision that can be removed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Term {
-    /// The open issue.
+    /// Open issue.
     Issue,
     /// In-app ads.
     Ads,
     /// A quota below the demand.
     Quota,
-    /// The relationship, good or bad.
+    /// Relationship, positive or negative.
     Relationship,
-    /// Time subscribed.
+    /// Tenure.
     Tenure,
-    /// Today's service.
+    /// Service of the day.
     Service,
-    /// What the market expects beyond the own curve.
+    /// Market addition to the individual's curve.
     Expectations,
-    /// What budgets have drifted by.
+    /// Drift of budgets.
     Budgets,
-    /// The economy's effect on the budget.
+    /// Effect of the economy on the budget.
     Economy,
-    /// List prices and discounts beside those of the last bill.
+    /// Changes of list prices and discounts since the last bill.
     Prices,
 }
 
@@ -66,7 +66,7 @@ impl Term {
         Term::Prices,
     ];
 
-    /// The weighing without the term; none where it weighs nothing. `last_bill` are the prices of the last bill.
+    /// Returns the decision without the term, or `None` if the term has no effect. `last_bill` contains the prices of the last bill.
     fn removed(self, weighing: &Weighing, last_bill: Option<&ByPlan<f64>>) -> Option<Weighing> {
         let mut other = *weighing;
         let mut each = |change: &dyn Fn(&mut Experience)| other.experiences.0.iter_mut().for_each(change);
@@ -86,31 +86,31 @@ impl Term {
     }
 }
 
-/// What a decision would have been without a term.
+/// The decision without one term.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TurningTerm {
     /// The term.
     pub term: Term,
-    /// The plan that would have been best, with its surplus; none if no plan would have been acceptable.
+    /// Best plan with its surplus; `None` if no plan is acceptable.
     pub plan: Option<(Plan, f64)>,
 }
 
-/// A decision as it was weighed.
+/// An evaluated decision.
 #[derive(Debug, Clone)]
 pub struct Weighed {
     /// The plans.
     pub plans: ByPlan<PlanTerms>,
-    /// The curve, with the market's expectations and the economy.
+    /// The curve with market expectations and the economy.
     pub curve: Curve,
-    /// The best acceptable plan.
+    /// Best acceptable plan.
     pub choice: Option<Plan>,
-    /// The terms that turn the decision, each alone: from leaving to staying, the largest surplus first; or from staying
-    /// to leaving.
+    /// Terms that change the decision when removed alone: from cancelling to staying, by descending surplus, or from staying to
+    /// cancelling.
     pub turning: Vec<TurningTerm>,
 }
 
 impl Weighed {
-    /// Takes apart what was weighed.
+    /// Decomposes an evaluated decision.
     pub(crate) fn of(weighing: &Weighing, last_bill: Option<&ByPlan<f64>>, params: &Params) -> Weighed {
         let curve = weighing.curve(params);
         let qualities = weighing.qualities(params);
@@ -157,7 +157,7 @@ mod tests {
     use novamind_world::settings::PerGroup;
     use novamind_world::state::World;
 
-    /// A decision as the lens sees it: plan of the morning, whether satisfaction was negative, what was weighed.
+    /// A decision: plan at the start of the day, whether satisfaction was negative, evaluation.
     struct Seen {
         plan: Plan,
         is_unhappy: bool,
@@ -165,7 +165,7 @@ mod tests {
         has_late_issue: bool,
     }
 
-    /// Takes apart the decisions of everybody.
+    /// Decomposes the decisions of all individuals.
     #[derive(Default)]
     struct Everybody(Mutex<BTreeMap<u32, Seen>>);
 
@@ -185,7 +185,7 @@ mod tests {
         }
     }
 
-    /// A company with many subscribers whose prices, quotas and ads change all the time.
+    /// Plays a company with many subscribers and frequent changes of prices, quotas and ads.
     fn change_settings(world: &mut World, day: u32) {
         let step = f64::from(day % 11);
         let core = &mut world.settings.core;
@@ -241,7 +241,7 @@ mod tests {
         assert!(left > 2000 && switched > 2000 && turned_by_issue > 0, "{left} {switched} {turned_by_issue}");
     }
 
-    /// What is shown of a plan adds up to what was compared, bit for bit.
+    /// Asserts that the shown terms of a plan add up to the compared value, bit for bit.
     fn add_up(weighed: &Weighed) {
         for own in weighed.plans.iter() {
             let Experience { delivered, relationship, tenure, quota, issues, ads } = own.experience;

@@ -5,7 +5,7 @@ use std::fmt;
 use super::measure::Quantity;
 use super::series::MeasuredDay;
 
-/// How a figure is compared with a number.
+/// A comparison of a figure with a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Relation {
     /// `>`
@@ -19,7 +19,7 @@ pub enum Relation {
 }
 
 impl Relation {
-    /// Its sign.
+    /// Returns the operator.
     pub fn sign(self) -> &'static str {
         match self {
             Relation::Above => ">",
@@ -29,7 +29,7 @@ impl Relation {
         }
     }
 
-    /// Whether it holds.
+    /// Whether the comparison is true.
     pub fn holds(self, value: f64, threshold: f64) -> bool {
         match self {
             Relation::Above => value > threshold,
@@ -40,17 +40,17 @@ impl Relation {
     }
 }
 
-/// How a figure moves against the day before.
+/// The direction of a figure compared with the day before.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
-    /// It is higher.
+    /// The figure is higher.
     Rises,
-    /// It is lower.
+    /// The figure is lower.
     Falls,
 }
 
 impl Direction {
-    /// Its word.
+    /// Returns the keyword.
     pub fn word(self) -> &'static str {
         match self {
             Direction::Rises => "rises",
@@ -59,25 +59,25 @@ impl Direction {
     }
 }
 
-/// Something that happens on a day.
+/// An event of a day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WorldEvent {
-    /// Rivals move.
+    /// A competitor move.
     Rival,
-    /// Expectations and budgets drift.
+    /// Drift of expectations and budgets.
     Drift,
-    /// A demand surge acts.
+    /// A demand surge is active.
     Surge,
-    /// The service is down.
+    /// An outage.
     Outage,
 }
 
 impl WorldEvent {
-    /// All of them.
+    /// All events.
     pub const ALL: [WorldEvent; 4] =
         [WorldEvent::Rival, WorldEvent::Drift, WorldEvent::Surge, WorldEvent::Outage];
 
-    /// Its name in conditions.
+    /// Returns the name in conditions.
     pub fn id(self) -> &'static str {
         ["rival", "drift", "surge", "outage"][self as usize]
     }
@@ -92,19 +92,19 @@ impl WorldEvent {
     }
 }
 
-/// What is true of a day or not.
+/// A condition on a day.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Condition {
-    /// A figure is beyond a number.
+    /// A figure is above or below a number.
     Compared(Quantity, Relation, f64),
-    /// A figure is not what it was on the day before.
+    /// A figure differs from the day before.
     Moved(Quantity, Direction),
-    /// Something happens.
+    /// An event occurs.
     Event(WorldEvent),
 }
 
 impl Condition {
-    /// The figure that it is about; none for an event.
+    /// Returns the figure; `None` for an event.
     pub fn quantity(&self) -> Option<&Quantity> {
         match self {
             Condition::Compared(quantity, ..) | Condition::Moved(quantity, _) => Some(quantity),
@@ -112,7 +112,7 @@ impl Condition {
         }
     }
 
-    /// How it stands on a day of some days, day 1 first.
+    /// Evaluates the condition on a day. `days` starts with day 1.
     pub(crate) fn judged(&self, days: &[MeasuredDay], day: u32) -> Judged {
         let before = day.saturating_sub(1);
         let at = |day: u32| self.quantity().and_then(|quantity| quantity.value(days, day));
@@ -128,7 +128,7 @@ impl Condition {
         }
     }
 
-    /// Whether it is true of a day. What has no value is beyond nothing, and there is no day 0.
+    /// Whether the condition is true on a day. It is false if the figure has no value, and on day 0.
     fn holds(&self, days: &[MeasuredDay], day: u32) -> bool {
         let at = |quantity: &Quantity, day: u32| quantity.value(days, day);
         match self {
@@ -150,13 +150,13 @@ impl Condition {
     }
 }
 
-/// `churn(S1) > 0.05 over 7`, `reputation(S3) falls`, `event rival`.
+/// Writes `churn(S1) > 0.05 over 7`, `reputation(S3) falls` or `event rival`.
 impl fmt::Display for Condition {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Condition::Compared(quantity, relation, threshold) => {
                 let (sign, span) = (relation.sign(), quantity.span());
-                // Zero has no sign, and nobody counts three hundred digits.
+                // Removes the sign of zero, and uses exponents for large numbers.
                 match threshold + 0.0 {
                     large if large.abs() >= 1e15 => write!(formatter, "{quantity} {sign} {large:e}{span}"),
                     plain => write!(formatter, "{quantity} {sign} {plain}{span}"),
@@ -170,26 +170,26 @@ impl fmt::Display for Condition {
     }
 }
 
-/// How a condition stands on a day.
+/// The state of a condition on a day.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Judged {
     /// The day, from 1.
     pub day: u32,
-    /// The figure; none for an event, and where it has no value.
+    /// Value of the figure; `None` for an event, or without a value.
     pub value: Option<f64>,
-    /// The same on the day before.
+    /// Value of the figure on the day before.
     pub before: Option<f64>,
-    /// Whether it is true.
+    /// Whether the condition is true.
     pub is_true: bool,
-    /// Whether it was true on the day before.
+    /// Whether the condition was true on the day before.
     pub was_true: bool,
-    /// Whether it is a figure over several days that has its first value, or the first one after days without any.
+    /// Whether a figure over several days has its first value, or its first value after a gap.
     pub begins: bool,
 }
 
 impl Judged {
-    /// Whether it became true on the day. A figure over several days that had no value on the day before has not: its days
-    /// were not whole before, so with what it begins is no change.
+    /// Whether the condition became true on the day. The first value of a figure over several days is not a change, because its
+    /// days were incomplete before.
     pub fn becomes_true(&self) -> bool {
         self.is_true && !self.was_true && !self.begins
     }

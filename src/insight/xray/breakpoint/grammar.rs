@@ -1,4 +1,4 @@
-//! How conditions are written (docs/debugging.md#breakpoints).
+//! The syntax of conditions (docs/debugging.md#breakpoints).
 
 use std::str::FromStr;
 
@@ -7,23 +7,23 @@ use super::measure::{Measure, MeasureKind, NoQuantity, Quantity};
 use novamind_base::nearest;
 use novamind_world::identifiers::Group;
 
-/// What is wrong with a text, and where.
+/// A syntax error with its position.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ConditionProblem {
-    /// What is wrong and what would be right.
+    /// Error message with the expected syntax.
     pub message: String,
-    /// Column in the text, from 1, in characters.
+    /// Column in the text, in characters from 1.
     pub column: usize,
 }
 
-/// A word, or a sign that stands for itself.
+/// A word or an operator.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Token<'a> {
     text: &'a str,
     column: usize,
 }
 
-/// Reads words and signs one after the other; a # begins a comment.
+/// Reads tokens in order; `#` starts a comment.
 pub(crate) struct Words<'a> {
     tokens: Vec<Token<'a>>,
     at: usize,
@@ -31,7 +31,6 @@ pub(crate) struct Words<'a> {
 }
 
 impl<'a> Words<'a> {
-    /// Those of a text.
     pub(crate) fn of(text: &'a str) -> Words<'a> {
         let text = text.split('#').next().unwrap_or_default().trim_end();
         let (mut tokens, mut rest, mut column) = (Vec::new(), text, 1);
@@ -63,7 +62,7 @@ impl<'a> Words<'a> {
         ConditionProblem { message: message.into(), column: token.map_or(self.end, |token| token.column) }
     }
 
-    /// The next word, of a list; what it should be is said with what is near.
+    /// Reads the next word, which must be in a list. The error suggests similar words.
     fn one_of<T: Copy>(
         &mut self,
         known: &[T],
@@ -88,14 +87,14 @@ impl<'a> Words<'a> {
         })
     }
 
-    /// `(S1)`, if a bracket is opened.
+    /// Reads `(S1)`, if the next token is a bracket.
     pub(crate) fn group(&mut self) -> Result<Option<Group>, ConditionProblem> {
         if !self.next_if("(") {
             return Ok(None);
         }
         if let Some(bracket) = self.tokens.get(self.at).copied().filter(|token| token.text == ")") {
             return Err(
-                self.problem_at(Some(bracket), "a group is missing between the brackets, for instance (S1)")
+                self.problem_at(Some(bracket), "a group is missing between the brackets, for example (S1)")
             );
         }
         let groups: Vec<Group> = Group::all().collect();
@@ -106,7 +105,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// A name of a list, with the column it stands in.
+    /// Reads a name of a list, with its column.
     pub(crate) fn name<T: Copy>(
         &mut self,
         known: &[T],
@@ -116,7 +115,7 @@ impl<'a> Words<'a> {
         self.one_of(known, id, what).map(|(found, token)| (found, token.column))
     }
 
-    /// A whole number, if any word is left.
+    /// Reads a whole number, if any token is left.
     pub(crate) fn whole_number(&mut self) -> Result<Option<u32>, ConditionProblem> {
         let Some(token) = self.next() else { return Ok(None) };
         let number = token.text.parse().map(Some);
@@ -125,15 +124,15 @@ impl<'a> Words<'a> {
         })
     }
 
-    /// Nothing is left.
+    /// Checks that no token is left.
     pub(crate) fn end(&mut self) -> Result<(), ConditionProblem> {
         match self.next() {
             None => Ok(()),
-            Some(token) => Err(self.problem_at(Some(token), format!("{} is one word too many", token.text))),
+            Some(token) => Err(self.problem_at(Some(token), format!("unexpected {} at the end", token.text))),
         }
     }
 
-    /// ` over 7`, if it stands here.
+    /// Reads ` over 7`, if it is next.
     fn days(&mut self) -> Result<Option<(u32, usize)>, ConditionProblem> {
         let column = self.tokens.get(self.at).map_or(self.end, |token| token.column);
         if !self.next_if("over") {
@@ -141,12 +140,12 @@ impl<'a> Words<'a> {
         }
         let days = self.whole_number()?;
         let days =
-            days.ok_or_else(|| self.problem_at(None, "over needs a number of days, for instance over 7"))?;
+            days.ok_or_else(|| self.problem_at(None, "over needs a number of days, for example over 7"))?;
         let _ = self.next_if("days") || self.next_if("day");
         Ok(Some((days, column)))
     }
 
-    /// A number: `0.05`, `5%`, `1_000_000`.
+    /// Reads a number: `0.05`, `5%` or `1_000_000`.
     fn number(&mut self) -> Result<f64, ConditionProblem> {
         let token = self.next();
         let Some(word) = token else { return Err(self.problem_at(None, "a number is missing")) };
@@ -161,7 +160,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Bytes of the word or sign with which a text begins.
+/// Returns the length in bytes of the first token of a text.
 fn length_of_token(text: &str, first: char) -> usize {
     let is_word = |letter: char| letter.is_alphanumeric() || "_.-+%".contains(letter);
     let is_sign = |letter: char| "<>=".contains(letter);
@@ -177,7 +176,7 @@ fn length_of_token(text: &str, first: char) -> usize {
 impl FromStr for Condition {
     type Err = ConditionProblem;
 
-    /// `churn(S1) > 0.05 over 7`, `reputation(S3) falls`, `event rival`.
+    /// Parses `churn(S1) > 0.05 over 7`, `reputation(S3) falls` or `event rival`.
     fn from_str(text: &str) -> Result<Condition, ConditionProblem> {
         let mut words = Words::of(text);
         let condition = match words.next_if("event") {
@@ -189,13 +188,12 @@ impl FromStr for Condition {
     }
 }
 
-/// What a figure is judged by.
 enum Judgement {
     Compared(Relation, f64),
     Moved(Direction),
 }
 
-/// The days of a figure may stand behind it or at the end.
+/// Parses a condition on a figure. Its days follow the figure or the predicate.
 fn about_a_figure(words: &mut Words<'_>) -> Result<Condition, ConditionProblem> {
     let (measure, column) = words.name(Measure::ALL, Measure::id, "a figure")?;
     let group = words.group()?;
@@ -219,13 +217,13 @@ fn about_a_figure(words: &mut Words<'_>) -> Result<Condition, ConditionProblem> 
     })
 }
 
-/// Why a figure cannot be asked for like this, and how it can.
+/// Describes why a figure is invalid, and the valid form.
 pub(crate) fn why_not(id: &str, no: NoQuantity) -> String {
     match no {
         NoQuantity::OfCompany => format!("{id} is a figure of the whole company; write {id} without a group"),
-        NoQuantity::OfGroup => format!("{id} is a figure of a group; write for instance {id}(S1)"),
+        NoQuantity::OfGroup => format!("{id} is a figure of a group; write for example {id}(S1)"),
         NoQuantity::OfADay => {
-            format!("{id} is read on one day; over works with what adds up and with shares")
+            format!("{id} has a value for one day; over works only with sums and shares")
         }
         NoQuantity::Days => format!("over takes 1 to {} days", Quantity::MOST_DAYS),
     }
@@ -249,7 +247,7 @@ fn judgement(words: &mut Words<'_>) -> Result<Judgement, ConditionProblem> {
     words.number().map(|threshold| Judgement::Compared(relation, threshold))
 }
 
-/// A share is a number from 0 to 1: what is more was meant in hundredths.
+/// Rejects a share above 1, which was probably meant in percent.
 fn refuse_more_than_all(
     measure: Measure,
     judgement: &Judgement,

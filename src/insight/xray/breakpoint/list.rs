@@ -1,35 +1,34 @@
-//! The breakpoints of an open run, and what was seen of its days for their sake.
+//! The breakpoints of an open run, and the recorded figures of its days.
 
 use std::sync::Arc;
 
 use super::condition::Condition;
 use super::series::Series;
 
-/// A condition at which a run stops.
+/// A condition that stops a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Breakpoint {
-    /// Its number, from 1; none is given twice.
+    /// Number, from 1; never reused.
     pub number: u32,
-    /// When it stops.
+    /// The condition.
     pub condition: Condition,
 }
 
-/// The breakpoints of a run, as long as it is open.
+/// The breakpoints of an open run.
 #[derive(Debug, Default)]
 pub(crate) struct Breakpoints {
     set: Vec<Breakpoint>,
     last_number: u32,
-    /// Figures of the days.
+    /// Recorded figures of the days.
     pub(crate) series: Arc<Series>,
 }
 
 impl Breakpoints {
-    /// Those that are set, in the order of their numbers.
     pub(crate) fn all(&self) -> &[Breakpoint] {
         &self.set
     }
 
-    /// Sets one; the one that is there if it is set already.
+    /// Sets a breakpoint, or returns the existing one with the same condition.
     pub(crate) fn set(&mut self, condition: Condition) -> Breakpoint {
         if let Some(known) = self.set.iter().find(|own| own.condition == condition) {
             return *known;
@@ -40,13 +39,12 @@ impl Breakpoints {
         breakpoint
     }
 
-    /// Removes the one with a number; none if there is none.
+    /// Removes the breakpoint with a number. Returns `None` if it does not exist.
     pub(crate) fn clear(&mut self, number: u32) -> Option<Breakpoint> {
         let at = self.set.iter().position(|own| own.number == number)?;
         Some(self.set.remove(at))
     }
 
-    /// Removes all; returns what was set.
     pub(crate) fn clear_all(&mut self) -> Vec<Breakpoint> {
         std::mem::take(&mut self.set)
     }

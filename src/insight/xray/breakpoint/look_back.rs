@@ -1,25 +1,25 @@
-//! When a condition was true, over the days of a run that are over.
+//! The history of a condition over the completed days of a run.
 
 use super::condition::{Condition, Judged};
 use crate::xray::inspector::Inspector;
 use novamind_session::Look;
 use novamind_tools::Refusal;
 
-/// How a condition stands today, and when that was otherwise.
+/// The current state of a condition, and the last days in each state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LookBack {
     /// The condition.
     pub condition: Condition,
-    /// How it stands on the last day.
+    /// State on the last day.
     pub today: Judged,
-    /// The last day on which it was true.
+    /// Last day on which the condition was true.
     pub last_true: Option<Judged>,
-    /// The last day on which it was false.
+    /// Last day on which the condition was false.
     pub last_false: Option<Judged>,
 }
 
 impl LookBack {
-    /// The day since which it is what it is today.
+    /// Returns the first day of the current state.
     pub fn since(&self) -> u32 {
         let other = if self.today.is_true { self.last_false } else { self.last_true };
         other.map_or(1, |other| other.day + 1)
@@ -27,21 +27,22 @@ impl LookBack {
 }
 
 impl Inspector<'_> {
-    /// Since when a condition is true or false. The look is recorded.
+    /// Returns since when a condition is true or false. Records the inspection.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn look_back(&mut self, condition: Condition) -> Result<LookBack, Refusal> {
         let all = self.judged_days("back", condition)?;
         let last = |is_true: bool| all.iter().rev().find(|own| own.is_true == is_true).copied();
-        let today = *all.last().ok_or_else(|| Refusal::new("not_readable", "no day could be seen again"))?;
+        let today =
+            *all.last().ok_or_else(|| Refusal::new("not_readable", "no day could be re-simulated"))?;
         Ok(LookBack { condition, today, last_true: last(true), last_false: last(false) })
     }
 
-    /// As [`Inspector::look_back`], for each breakpoint that is set, or the one with a number.
+    /// Calls [`Inspector::look_back`] for each breakpoint, or for the one with a number.
     ///
     /// # Errors
-    /// The same; `breakpoint_unknown`.
+    /// As [`Inspector::look_back`], and `breakpoint_unknown`.
     pub fn look_back_from(&mut self, number: Option<u32>) -> Result<Vec<LookBack>, Refusal> {
         let set = self.breakpoints()?;
         let chosen: Vec<Condition> = set
@@ -55,7 +56,8 @@ impl Inspector<'_> {
         chosen.into_iter().map(|condition| self.look_back(condition)).collect()
     }
 
-    /// The days on which a condition became true, and those on which its figure began so. The look is recorded.
+    /// Returns the days on which a condition became true, and those on which the first value of its figure made it true. Records
+    /// the inspection.
     ///
     /// # Errors
     /// As [`Inspector::look_back`].
@@ -64,7 +66,6 @@ impl Inspector<'_> {
         Ok(all.into_iter().filter(|own| own.is_true && !own.was_true).collect())
     }
 
-    /// How a condition stood on each day.
     fn judged_days(&mut self, what: &str, condition: Condition) -> Result<Vec<Judged>, Refusal> {
         let look = Look::begin(self.run, what, &condition.to_string(), None)?;
         let today = look.day();

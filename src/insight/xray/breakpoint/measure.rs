@@ -1,4 +1,4 @@
-//! Figures of a day that a condition can be about: of the company, or of a group.
+//! Daily figures of the company or of a group, for conditions.
 
 use std::fmt;
 
@@ -7,38 +7,38 @@ use novamind_record::figures::MeasuredGroup;
 use novamind_record::figures::churn;
 use novamind_world::identifiers::Group;
 
-/// How a figure goes with time.
+/// The relation of a figure to time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MeasureKind {
-    /// How things stand at the end of a day.
+    /// The value at the end of a day.
     State,
-    /// What happened on a day; over several days their sum.
+    /// A number of a day, or its sum over several days.
     Flow,
-    /// The share of something that happened, over so many days if no other number is named.
+    /// A share over several days, with the default number of days.
     Share(u32),
 }
 
-// Of a share, what it is a share of is found with it; this is what happened.
+// For a share, the expression is the numerator; the denominator is computed with it.
 type OfCompany = Option<fn(&MeasuredDay) -> f64>;
 type OfGroup = Option<fn(&MeasuredGroup) -> Option<f64>>;
 
 macro_rules! measures {
     ($($measure:ident = $id:literal, $kind:expr, $company:expr, $group:expr;)*) => {
-        /// A figure of a day.
+        /// A daily figure.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         #[allow(missing_docs)] // Each is described by its name.
         pub enum Measure { $($measure),* }
 
         impl Measure {
-            /// All of them.
+            /// All figures.
             pub const ALL: &'static [Measure] = &[$(Measure::$measure),*];
 
-            /// Its name in conditions and data.
+            /// Returns the name in conditions and data.
             pub fn id(self) -> &'static str {
                 match self { $(Measure::$measure => $id),* }
             }
 
-            /// How it goes with time.
+            /// Returns the relation to time.
             pub fn kind(self) -> MeasureKind {
                 match self { $(Measure::$measure => $kind),* }
             }
@@ -89,20 +89,20 @@ measures! {
     Relationship = "relationship", MeasureKind::State, None, Some(|own| own.relationship);
 }
 
-/// Why a figure cannot be asked for like this.
+/// The reason why a figure is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum NoQuantity {
-    /// It is one of the whole company.
+    /// Only the company has the figure.
     OfCompany,
-    /// It is one of a group.
+    /// Only groups have the figure.
     OfGroup,
-    /// It is how things stand on a day: it has no sum over days.
+    /// The figure is a value at the end of a day and has no sum.
     OfADay,
-    /// No number of days that can be.
+    /// The number of days is out of range.
     Days,
 }
 
-/// A figure of the company or of a group, over a number of days up to the one that is judged.
+/// A figure of the company or of a group, over a number of days up to the evaluated one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Quantity {
     measure: Measure,
@@ -111,10 +111,10 @@ pub struct Quantity {
 }
 
 impl Quantity {
-    /// Most days of a sum or a share.
+    /// Maximum number of days of a sum or a share.
     pub const MOST_DAYS: u32 = 1000;
 
-    /// A figure; `days` is a number from 1 to [`Quantity::MOST_DAYS`], where it is named.
+    /// Creates a figure. `days`, if given, must be from 1 to [`Quantity::MOST_DAYS`].
     pub(crate) fn new(
         measure: Measure,
         group: Option<Group>,
@@ -135,22 +135,22 @@ impl Quantity {
         Ok(Quantity { measure, group, days })
     }
 
-    /// The figure.
+    /// Returns the figure.
     pub fn measure(&self) -> Measure {
         self.measure
     }
 
-    /// The group; none for the company.
+    /// Returns the group, or `None` for the company.
     pub fn group(&self) -> Option<Group> {
         self.group
     }
 
-    /// The number of days that it adds up or divides; 1 where it is read on a day.
+    /// Returns the number of days of a sum or share; 1 for a value at the end of a day.
     pub fn days(&self) -> u32 {
         self.days
     }
 
-    /// Its days, where they are named: ` over 7`.
+    /// Returns the explicit number of days: ` over 7`.
     pub fn span(&self) -> String {
         match (self.measure.kind(), self.days) {
             (MeasureKind::State, _) | (MeasureKind::Flow, 1) => String::new(),
@@ -158,7 +158,7 @@ impl Quantity {
         }
     }
 
-    /// Its value on a day of some days, day 1 first; none while there are too few days, or where it divides by nothing.
+    /// Returns the value on a day. `days` starts with day 1. Returns `None` if there are too few days, or if the denominator is 0.
     pub(crate) fn value(&self, days: &[MeasuredDay], day: u32) -> Option<f64> {
         let value = match self.measure {
             Measure::Churn => {
@@ -190,7 +190,7 @@ impl Quantity {
     }
 }
 
-/// `churn(S1)`, `cash`.
+/// Writes `churn(S1)` or `cash`.
 impl fmt::Display for Quantity {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.group {

@@ -1,5 +1,5 @@
-//! Breakpoints: conditions on the figures of a day at which a debug run stops, and since when they hold in any run that
-//! may be looked into (docs/debugging.md#breakpoints).
+//! Breakpoints: conditions on daily figures that stop a debug run, and their history in any run that may be inspected
+//! (docs/debugging.md#breakpoints).
 
 pub(crate) mod condition;
 pub(crate) mod grammar;

@@ -1,4 +1,4 @@
-//! Breakpoints of a debug run, and running to the first of them.
+//! Breakpoints of a debug run, and simulation up to the first that becomes true.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -15,37 +15,36 @@ use novamind_tools::Refusal;
 pub struct Hit {
     /// The breakpoint.
     pub breakpoint: Breakpoint,
-    /// How its condition stands.
+    /// State of its condition.
     pub judged: Judged,
 }
 
-/// Days that were run, and why they stopped.
+/// Simulated days, and the reason for the stop.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunUntil {
-    /// Day on which they began.
+    /// First day.
     pub from: u32,
-    /// The figures of the last of the weeks, and the notices of all days.
+    /// Figures of the last week, and notices of all days.
     pub week: Week,
-    /// The breakpoints that became true on the last day; none if it stopped for another reason.
+    /// Breakpoints that became true on the last day; empty if the simulation stopped for another reason.
     pub hits: Vec<Hit>,
-    /// The breakpoints that were true on some of the days and became true on none of them: how they stand on the last one.
+    /// Breakpoints that were true on some of the days but became true on none of them.
     pub true_before: Vec<TrueBefore>,
 }
 
-/// A breakpoint that was true when days began to run, and did not become true on any of them.
+/// A breakpoint that was true at the start of the days and became true on none of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrueBefore {
-    /// The breakpoint, as it stands on the last day.
+    /// The breakpoint with its state on the last day.
     pub hit: Hit,
-    /// The last of the days on which it was true.
+    /// Last day on which the condition was true.
     pub until: u32,
-    /// The day on which its figure, over several days, had its first value and it was true at once; none: it was true before the
-    /// days that ran.
+    /// Day on which the first value of its figure over several days made it true; `None` if it was true before these days.
     pub began: Option<u32>,
 }
 
 impl Inspector<'_> {
-    /// The breakpoints that are set.
+    /// Returns all breakpoints.
     ///
     /// # Errors
     /// `not_in_this_mode`.
@@ -54,7 +53,7 @@ impl Inspector<'_> {
         Ok(self.own.breakpoints.all().to_vec())
     }
 
-    /// Sets a breakpoint. Nothing is shown by it, so nothing is recorded.
+    /// Sets a breakpoint. This reveals no hidden state, so no inspection is recorded.
     ///
     /// # Errors
     /// `not_in_this_mode`.
@@ -63,7 +62,7 @@ impl Inspector<'_> {
         Ok(self.own.breakpoints.set(condition))
     }
 
-    /// Removes a breakpoint, or all of them; returns what was removed.
+    /// Removes and returns a breakpoint, or all of them.
     ///
     /// # Errors
     /// `not_in_this_mode`, `breakpoint_unknown`.
@@ -80,17 +79,17 @@ impl Inspector<'_> {
         let numbers: Vec<String> =
             self.own.breakpoints.all().iter().map(|own| own.number.to_string()).collect();
         let message = match numbers.is_empty() {
-            true => format!("there is no breakpoint {number}; none is set"),
+            true => format!("there is no breakpoint {number}; no breakpoint is set"),
             false => format!("there is no breakpoint {number}; there are {}", numbers.join(", ")),
         };
         Refusal::at("number", "breakpoint_unknown", message)
     }
 
-    /// Simulates days of a debug run, and stops after the first on which a breakpoint becomes true. Each breakpoint is a look
-    /// of the last day: that a run goes on says as much as that it stops.
+    /// Simulates days of a debug run and stops after the first day on which a breakpoint becomes true. Records an inspection of the
+    /// last day for each breakpoint, because a run without a stop reveals hidden state, too.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `run_over`, `not_possible`, `not_readable`; `not_saved`: days may have run.
+    /// `not_in_this_mode`, `run_over`, `not_possible`, `not_readable`; after `not_saved`, days may have been simulated.
     pub fn run_until_breakpoint(
         &mut self,
         days: u32,
@@ -113,7 +112,7 @@ impl Inspector<'_> {
         Ok(RunUntil { from, week, hits, true_before })
     }
 
-    /// The figures of all days up to the one that a look shows: those that were seen, or else the days are simulated again.
+    /// Returns the figures of all days up to the inspected one. Re-simulates days without recorded figures.
     ///
     /// # Errors
     /// `not_possible`, `not_readable`.
@@ -127,7 +126,7 @@ impl Inspector<'_> {
     }
 }
 
-/// The breakpoints that became true on a day.
+/// Returns the breakpoints that became true on a day.
 fn hits_on(day: u32, set: &[Breakpoint], series: &Series) -> Vec<Hit> {
     series.read(|days| {
         let judged = set.iter().map(|own| Hit { breakpoint: *own, judged: own.condition.judged(days, day) });
@@ -135,7 +134,7 @@ fn hits_on(day: u32, set: &[Breakpoint], series: &Series) -> Vec<Hit> {
     })
 }
 
-/// The breakpoints that were true on some days and became true on none of them.
+/// Returns the breakpoints that were true on some days and became true on none of them.
 fn true_before(days: RangeInclusive<u32>, set: &[Breakpoint], series: &Series) -> Vec<TrueBefore> {
     series.read(|measured| {
         let of = |own: &Breakpoint| {

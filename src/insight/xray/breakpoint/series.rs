@@ -1,4 +1,4 @@
-//! The figures of every day that was simulated, as conditions read them.
+//! The figures of simulated days, for conditions.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -13,18 +13,14 @@ use novamind_world::market::surges::surge_factor;
 use novamind_world::params::Params;
 use novamind_world::state::World;
 
-/// Figures of a day.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct MeasuredDay {
-    /// Those of the company.
     pub(crate) figures: DayFigures,
-    /// Those of the groups.
     pub(crate) groups: ByGroup<MeasuredGroup>,
-    /// Whether rivals moved.
     pub(crate) rival: bool,
-    /// Whether expectations drifted.
+    /// Whether drift was applied.
     pub(crate) drift: bool,
-    /// Whether a demand surge acts.
+    /// Whether a demand surge is active.
     pub(crate) surge: bool,
 }
 
@@ -42,13 +38,13 @@ impl MeasuredDay {
         }
     }
 
-    /// Active subscribers with an open issue.
+    /// Number of active subscribers with an open issue.
     pub(crate) fn open_issues(&self) -> u32 {
         Group::all().map(|group| self.groups[group].open_issues).sum()
     }
 }
 
-/// Keeps the figures of days, without a gap from day 1.
+/// Records the figures of consecutive days from day 1.
 #[derive(Debug, Default)]
 pub(crate) struct Series {
     pages: Mutex<SeriesPages>,
@@ -57,17 +53,16 @@ pub(crate) struct Series {
 #[derive(Debug, Default)]
 struct SeriesPages {
     days: Vec<MeasuredDay>,
-    /// Figures of the day that is simulated.
     today: DayFigures,
 }
 
 impl Series {
-    /// Reads the days, day 1 first.
+    /// Calls a function with the days from day 1.
     pub(crate) fn read<R>(&self, work: impl FnOnce(&[MeasuredDay]) -> R) -> R {
         work(&self.pages().days)
     }
 
-    /// The last day that is there; 0 before the first.
+    /// Returns the last recorded day, or 0.
     pub(crate) fn last_day(&self) -> u32 {
         self.pages().days.len() as u32
     }
@@ -84,7 +79,7 @@ impl DayWatch for Series {
 
     fn day_over(&self, world: &World, params: &Params, facts: &Facts) {
         let mut pages = self.pages();
-        // After days that nobody watched there is a gap: what lacks is simulated again before anything is read.
+        // Days without an observer leave a gap, which is re-simulated before the figures are used.
         if pages.days.len() as u32 + 1 == world.day {
             let today = MeasuredDay::of(world, params, facts, &pages.today);
             pages.days.push(today);

@@ -1,4 +1,4 @@
-//! Keeps what is written to a figure on one day.
+//! Records the changes of a figure on one day.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -13,7 +13,7 @@ use novamind_world::params::Params;
 use novamind_world::reputation::ReputationWrite;
 use novamind_world::state::World;
 
-/// Keeps what is written to a figure on one day.
+/// Records the changes of a figure on one day.
 pub(super) struct WriteDiary {
     target: WriteTarget,
     day: u32,
@@ -21,29 +21,29 @@ pub(super) struct WriteDiary {
 }
 
 struct WritePages {
-    /// The figure at the end of the day before.
+    /// Value at the end of the day before.
     first: f64,
-    /// What was written since.
+    /// Changes since then.
     writes: Vec<Write>,
-    /// The figures of the day, once they are counted.
+    /// The result after the day.
     figures: DayFigures,
-    /// The day that was asked for.
+    /// Requested day.
     kept: Option<WhoWrites>,
 }
 
 impl WritePages {
-    /// The figure as it stands after what was written.
+    /// Returns the value after all changes.
     fn now(&self) -> f64 {
         self.writes.last().map_or(self.first, |write| write.after)
     }
 
-    /// Adds an amount as the world did.
+    /// Adds an amount in the same way as the simulator.
     fn add(&mut self, by: WrittenBy, amount: f64) {
         let before = self.now();
         self.write(by, &[amount], before, before + amount);
     }
 
-    /// Neighbours by one mechanism are one write.
+    /// Merges consecutive changes of one mechanism.
     fn write(&mut self, by: WrittenBy, changes: &[f64], before: f64, after: f64) {
         match self.writes.last_mut().filter(|write| write.by == by) {
             Some(write) => {
@@ -60,14 +60,14 @@ impl WritePages {
 }
 
 impl WriteDiary {
-    /// Of a figure on a day; with what it was before day 1.
+    /// Creates a recorder of a figure on a day, with its value before day 1.
     pub(super) fn of(target: WriteTarget, day: u32, opening: f64) -> WriteDiary {
         let pages =
             WritePages { first: opening, writes: Vec::new(), figures: DayFigures::default(), kept: None };
         WriteDiary { target, day, pages: Mutex::new(pages) }
     }
 
-    /// What was written on the day; none if it was not simulated.
+    /// Takes the changes of the day; `None` if the day was not simulated.
     pub(super) fn take(&self) -> Option<WhoWrites> {
         self.pages().kept.take()
     }
@@ -76,7 +76,6 @@ impl WriteDiary {
         self.pages.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The figure as it stands in a world.
     fn read(&self, world: &World) -> f64 {
         match self.target {
             WriteTarget::Reputation(group) => world.market.reputation.of(group),
@@ -122,7 +121,7 @@ impl DayWatch for WriteDiary {
     }
 }
 
-/// Cash moves in this order: leads are paid, subscribers pay, then the ledger of the day.
+/// Adds changes of cash in the order of the day: lead costs, payments of subscribers, other ledger entries.
 fn book_day(pages: &mut WritePages, params: &Params, facts: &Facts) {
     let DayFigures { new_leads, payments_received, .. } = pages.figures;
     let leads = f64::from(new_leads) * params.leads.lead_acquisition_cost;
@@ -131,7 +130,7 @@ fn book_day(pages: &mut WritePages, params: &Params, facts: &Facts) {
     pages.book(&facts.ledger);
 }
 
-/// Those who left, by why, and those who came, by how.
+/// Adds cancellations by reason and new subscribers by source.
 fn count_day(pages: &mut WritePages, group: Group, world: &World, facts: &Facts) {
     let has_left =
         |own: &&SubscriptionEnded| own.group == group && own.status == SubscriptionStatus::Cancelled;

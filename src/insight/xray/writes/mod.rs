@@ -1,4 +1,4 @@
-//! Who wrote a figure on a day: each mechanism with its amount, in the order of the day (docs/debugging.md#who-writes).
+//! The changes of a figure on a day: each mechanism with its amount, in the order of the day (docs/debugging.md#who-writes).
 
 mod diary;
 pub(crate) mod target;
@@ -14,68 +14,68 @@ use novamind_tools::Refusal;
 use novamind_world::events::{Category, EndCause, Source};
 use novamind_world::reputation::ReputationCause;
 
-/// What wrote.
+/// The source of a change.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum WrittenBy {
     /// A mechanism of reputation.
     Reputation(ReputationCause),
-    /// Movements of cash of a category, by calls before the day or on it.
+    /// Ledger entries of a category, by calls before the day or by the day.
     Booked(Category),
-    /// Subscribers who left, by why.
+    /// Cancellations, by reason.
     Left(EndCause),
-    /// Individuals who signed up, by how they came.
+    /// New individual subscribers, by source.
     SignedUp(Source),
-    /// Companies whose first deal was accepted.
+    /// Enterprises with their first accepted deal.
     FirstDeals,
 }
 
-/// What one mechanism wrote without another between.
+/// Consecutive changes by one mechanism.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Write {
     /// The mechanism.
     pub by: WrittenBy,
-    /// What it added, one after the other, before limits.
+    /// Amounts in order, before limits.
     pub changes: Vec<f64>,
-    /// The figure before it.
+    /// Value before.
     pub before: f64,
-    /// The figure after it.
+    /// Value after.
     pub after: f64,
 }
 
 impl Write {
-    /// By how much the figure moved.
+    /// Returns the change of the figure.
     pub fn amount(&self) -> f64 {
         self.after - self.before
     }
 
-    /// By how much it would have moved without limits.
+    /// Returns the change without limits.
     pub fn asked(&self) -> f64 {
         self.changes.iter().sum()
     }
 
-    /// Whether a limit took away or added something: more than what sums are rounded by.
+    /// Whether a limit changed the result by more than rounding errors.
     pub fn is_limited(&self) -> bool {
         (self.amount() - self.asked()).abs() > 1e-12 * self.before.abs().max(1.0)
     }
 }
 
-/// All writes of a figure on a day.
+/// All changes of a figure on a day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WhoWrites {
     /// The figure.
     pub target: WriteTarget,
     /// The day.
     pub day: u32,
-    /// The figure at the end of the day before.
+    /// Value at the end of the day before.
     pub first: f64,
-    /// The figure at the end of the day.
+    /// Value at the end of the day.
     pub last: f64,
-    /// What lies between: each begins where the one before it ended.
+    /// Changes in order; each starts with the result of the previous one.
     pub writes: Vec<Write>,
 }
 
 impl Inspector<'_> {
-    /// Who wrote a figure on a day, the last one if none is named. The look is recorded.
+    /// Returns the changes of a figure on a day, by default the last one. Records the inspection.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
@@ -89,6 +89,8 @@ impl Inspector<'_> {
         };
         let diary = Arc::new(WriteDiary::of(target, day, opening));
         look.watch_up_to(self.run, day, diary.clone())?;
-        diary.take().ok_or_else(|| Refusal::new("not_readable", format!("day {day} could not be seen again")))
+        diary
+            .take()
+            .ok_or_else(|| Refusal::new("not_readable", format!("day {day} could not be re-simulated")))
     }
 }

@@ -1,4 +1,4 @@
-//! Of which figure the writes of a day are asked for.
+//! The figures whose changes can be inspected.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,7 +6,7 @@ use std::str::FromStr;
 use crate::xray::breakpoint::grammar::{ConditionProblem, Words};
 use novamind_world::identifiers::Group;
 
-/// A figure of which every write can be told.
+/// A figure whose changes can be inspected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WriteTarget {
     /// Reputation of a group.
@@ -17,17 +17,17 @@ pub enum WriteTarget {
     Subscribers(Group),
 }
 
-/// The figures, before their groups.
+/// Names of the figures, without groups.
 const NAMES: [&str; 3] = ["reputation", "cash", "subscribers"];
 
 impl WriteTarget {
-    /// A figure and a day or none: `reputation(S3) 84`.
+    /// Parses a figure and an optional day: `reputation(S3) 84`.
     ///
     /// # Errors
-    /// What is wrong, and where.
+    /// Returns the syntax error with its position.
     pub fn parse_with_day(text: &str) -> Result<(WriteTarget, Option<u32>), ConditionProblem> {
         let mut words = Words::of(text);
-        let (name, column) = words.name(&NAMES, |name| name, "a figure whose writes are known")?;
+        let (name, column) = words.name(&NAMES, |name| name, "a figure with recorded writes")?;
         let group = words.group()?;
         let day = words.whole_number()?;
         words.end()?;
@@ -42,7 +42,7 @@ impl WriteTarget {
             ("reputation", Some(group)) => WriteTarget::Reputation(group),
             (_, Some(group)) => WriteTarget::Subscribers(group),
             (name, None) => {
-                return problem(format!("{name} is a figure of a group; write for instance {name}(S1)"));
+                return problem(format!("{name} is a figure of a group; write for example {name}(S1)"));
             }
         };
         Ok((target, day))
@@ -57,7 +57,7 @@ impl FromStr for WriteTarget {
     }
 }
 
-/// `reputation(S3)`, `cash`.
+/// Writes `reputation(S3)` or `cash`.
 impl fmt::Display for WriteTarget {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -1,13 +1,13 @@
-//! A page as one HTML file: no script, no other file, light and dark as the reader's system has it.
+//! Writes a page as one self-contained HTML file without scripts. Light or dark follows the reader's system.
 
 use super::page::{Bar, Block, Fact, Page, Table};
 use super::svg;
 use novamind_base::notation::escaped_html;
 
-/// The style of the page.
+/// CSS of the page.
 pub(super) const STYLE: &str = include_str!("../../assets/report.css");
 
-/// The page as HTML.
+/// Returns the page as HTML.
 pub fn write(page: &Page) -> String {
     let tags: String = page.tags.iter().map(|tag| format!("<li>{}</li>", escaped_html(tag))).collect();
     let mut body = String::new();
@@ -40,14 +40,14 @@ pub fn write(page: &Page) -> String {
     )
 }
 
-/// Parts that are shown unfolded; more of them are first seen by their titles.
+/// Number of sections that start expanded; with more of them, all start collapsed.
 const MOST_UNFOLDED: usize = 12;
 
-/// What the writing of a block depends on.
+/// State that affects how blocks are written.
 struct Shape {
-    /// Charts so far.
+    /// Number of charts written.
     charts: usize,
-    /// What can be folded is shown.
+    /// Sections start expanded.
     unfolded: bool,
 }
 
@@ -140,7 +140,7 @@ mod tests {
     use super::*;
     use crate::{Story, as_html, as_markdown, test_kit};
 
-    /// Names of the elements that are open when they should not be, or closed without having been open.
+    /// Checks that elements are opened and closed in matching order.
     fn check(html: &str) {
         let mut open: Vec<&str> = Vec::new();
         let mut rest = html.strip_prefix("<!DOCTYPE html>").expect("a document type");

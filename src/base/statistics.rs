@@ -12,8 +12,8 @@ pub const RESAMPLES: usize = 2_000;
 /// Share of resamples in an interval.
 pub const LEVEL: f64 = 0.95;
 
-/// Minimum sample size for an interval. With fewer values, even equal signs leave chance more than 1 - [`LEVEL`] (of
-/// six, 2 in 64), and resampling shows little more than their range.
+/// Minimum sample size for an interval. With fewer values, all signs agree by chance more often than 1 - [`LEVEL`] (with
+/// six: 2 in 64), and resampling shows little more than their range.
 pub const LEAST: usize = 6;
 
 /// Mean and sample standard deviation of a set of numbers.

@@ -177,11 +177,7 @@ mod tests {
         assert!((-0.5..-0.35).contains(&own.low) && (0.35..0.5).contains(&own.high), "{own:?}");
         assert_eq!(Interval::of_mean(&values), Some(own), "the same numbers, the same interval");
         assert_eq!(Interval::of_mean(&[]), None);
-        assert_eq!(
-            Interval::of_mean(&[3.0; LEAST - 1]),
-            None,
-            "too few values for an interval"
-        );
+        assert_eq!(Interval::of_mean(&[3.0; LEAST - 1]), None, "too few values for an interval");
         assert_eq!(Interval::of_mean(&[3.0; LEAST]), Some(Interval { low: 3.0, high: 3.0 }));
     }
 

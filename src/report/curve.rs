@@ -46,7 +46,9 @@ pub fn rows(own: &CurveExplorer) -> Vec<Vec<String>> {
 pub fn remarks(own: &CurveExplorer) -> Vec<String> {
     let mut lines = Vec::new();
     if rows(own).iter().flatten().any(|cell| cell == NOBODY) {
-        lines.push(format!("{NOBODY} the price is above the budget of too many leads: no quality is sufficient"));
+        lines.push(format!(
+            "{NOBODY} the price is above the budget of too many leads: no quality is sufficient"
+        ));
     }
     if !own.is_truth() {
         lines.push(

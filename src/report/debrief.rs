@@ -101,7 +101,9 @@ pub fn in_words(own: &Debrief) -> Vec<String> {
 /// Describes the first decisions that differ from the reference play, and their effect.
 pub fn comparison_in_words(own: &Debrief) -> Vec<String> {
     match &own.comparison {
-        DecisionComparison::Same => vec!["You made the same decisions as the reference play, week by week.".to_owned()],
+        DecisionComparison::Same => {
+            vec!["You made the same decisions as the reference play, week by week.".to_owned()]
+        }
         DecisionComparison::Nothing => vec!["There was nothing to decide in this part.".to_owned()],
         DecisionComparison::Unknown => {
             vec!["Your decisions cannot be compared with the reference play in this run.".to_owned()]
@@ -113,10 +115,7 @@ pub fn comparison_in_words(own: &Debrief) -> Vec<String> {
             };
             let mut lines: Vec<String> =
                 [told("reference", &own.good), told("bad", &own.bad)].into_iter().flatten().collect();
-            lines.push(format!(
-                "Your decisions first differ in week {}, day {}:",
-                parting.week, parting.day
-            ));
+            lines.push(format!("Your decisions first differ in week {}, day {}:", parting.week, parting.day));
             let names = own.company_names();
             lines.extend(parting.decisions.iter().map(|one| format!("  {}", decision_in_words(one, &names))));
             lines.push(effect_in_words(parting, own));
@@ -241,7 +240,9 @@ fn alone_or_together(effect: PartingEffect, own: &Debrief) -> String {
             " Copying them alone would have cost you; with its later decisions, the reference play reaches {words}."
         ),
         false => {
-            format!(" Copying them would have cost you: you did better than the reference play, which reaches {words}.")
+            format!(
+                " Copying them would have cost you: you did better than the reference play, which reaches {words}."
+            )
         }
     }
 }
@@ -262,7 +263,10 @@ fn effort(step: &DebriefStep) -> String {
 /// States which seeds the figures in the text come from.
 fn figures_in_text(own: &Debrief) -> String {
     let (from, to) = (MEASURED_SEEDS.start(), MEASURED_SEEDS.end());
-    format!("Amounts in this text are averages over seeds {from} to {to}; your company has seed {}.", own.seed)
+    format!(
+        "Amounts in this text are averages over seeds {from} to {to}; your company has seed {}.",
+        own.seed
+    )
 }
 
 /// Splits Markdown into paragraphs without markup.

@@ -276,8 +276,11 @@ impl Fit {
         let missing: Vec<(Concern, f64)> = Concern::ALL.iter().filter_map(certain).collect();
         let inside = |concern: &&Concern| self.beside(plan, **concern) == Some(Beside::Inside);
         let open: Vec<&str> = Concern::ALL.iter().filter(inside).map(|concern| concern.id()).collect();
-        let open =
-            if open.is_empty() { String::new() } else { format!("may not suit all customers: {}", open.join(", ")) };
+        let open = if open.is_empty() {
+            String::new()
+        } else {
+            format!("may not suit all customers: {}", open.join(", "))
+        };
         match (missing.is_empty(), open.is_empty()) {
             (true, true) => "meets the estimated needs".to_owned(),
             (true, false) => open,
@@ -463,9 +466,12 @@ mod tests {
         let enterprise = all.iter().find(|fit| fit.group.is_enterprise()).expect("E1");
         assert_eq!(enterprise.beside(Plan::C, Concern::Price), None, "enterprises negotiate");
         let text = fit.lines().join("\n");
-        for words in
-            ["required quality and budget as of day 0 (today)", "budget $", "$12 ($7 for leads)", "no week has run"]
-        {
+        for words in [
+            "required quality and budget as of day 0 (today)",
+            "budget $",
+            "$12 ($7 for leads)",
+            "no week has run",
+        ] {
             assert!(text.contains(words), "{words} in\n{text}");
         }
     }

@@ -90,8 +90,9 @@ impl Funnel {
         );
         if let Some((plan, delivered)) = self.best.filter(|_| self.turned_away_lately > 0) {
             let (floor, day) = (self.floor.quality(), self.as_of);
-            text +=
-                &format!("; {plan} delivers {delivered:.4}, their mean required quality is {floor} (as of day {day})");
+            text += &format!(
+                "; {plan} delivers {delivered:.4}, their mean required quality is {floor} (as of day {day})"
+            );
             if self.usage.beside(self.quota) != Beside::Above {
                 text += &format!(
                     "; its quota is {}, the smallest enterprises need {} units a day",
@@ -168,6 +169,8 @@ mod tests {
         let away = all.iter().find(|own| own.turned_away() > 0).expect("some");
         assert!(away.in_words().contains("found no plan good enough"), "{}", away.in_words());
         let lately = all.iter().find(|own| own.turned_away_lately > 0).expect("some, lately");
-        assert!(lately.in_words().contains(" delivers ") && lately.in_words().contains("required quality is "));
+        assert!(
+            lately.in_words().contains(" delivers ") && lately.in_words().contains("required quality is ")
+        );
     }
 }

@@ -132,7 +132,9 @@ fn rank(story: &Story) -> Vec<Block> {
         own: place.whose == Whose::Own,
     };
     let told = match standing.rank {
-        Some(_) => format!("{}: final cash, the best of three runs of each agent.", capital(&standing.in_words())),
+        Some(_) => {
+            format!("{}: final cash, the best of three runs of each agent.", capital(&standing.in_words()))
+        }
         None if !standing.obstacles.is_empty() => format!("{}.", capital(&standing.in_words())),
         None => "The run has no score to compare. Published results: final cash, the best of three \
                  runs of each agent."
@@ -313,12 +315,10 @@ fn behaviour(measures: &Measures, published: bool) -> Vec<Block> {
             ],
             rows: skill.groups.iter().map(row).collect(),
         }));
-        blocks.push(Block::Note(
-            format!(
-                "The best channel has the most leads per dollar among the paid channels. None is named if \
+        blocks.push(Block::Note(format!(
+            "The best channel has the most leads per dollar among the paid channels. None is named if \
                  only one was paid, or if the best brought fewer than {ENOUGH_LEADS} leads."
-            ),
-        ));
+        )));
     }
     if !measures.tools.tools.is_empty() {
         let row = |(tool, calls): &(String, u32)| vec![tool.clone(), calls.to_string()];

@@ -42,9 +42,10 @@ pub fn changed_in_words(changed: &ChangedParameters) -> Vec<String> {
         lines.push("scheduled for a later day:".to_owned());
     }
     lines.extend(
-        changed.waiting.iter().map(|own| {
-            format!("  {}: {} from day {}", own.key, own.new, own.from_day.unwrap_or_default())
-        }),
+        changed
+            .waiting
+            .iter()
+            .map(|own| format!("  {}: {} from day {}", own.key, own.new, own.from_day.unwrap_or_default())),
     );
     lines
 }

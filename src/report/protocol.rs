@@ -257,7 +257,8 @@ fn when(own: &Questionnaire) -> String {
             format!("after weeks {}", weeks.join(", "))
         }
         Moment::Break => {
-            "whenever the participant resumes the run or restarts the clock, even after a short break".to_owned()
+            "whenever the participant resumes the run or restarts the clock, even after a short break"
+                .to_owned()
         }
         Moment::End => "at the end".to_owned(),
     }

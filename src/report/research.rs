@@ -21,10 +21,13 @@ fn time_in_words(spread: &ResearchSpread, earliest: u32, last_day: u32) -> Strin
     let [quarter, half, three_quarters] = spread.quartile_days;
     let by_the_end = format!("{} by the last day ({last_day})", of_100(spread.by_last_day));
     if quarter > earliest {
-        return format!("half of all projects finish between day {quarter} and {three_quarters}; {by_the_end}");
+        return format!(
+            "half of all projects finish between day {quarter} and {three_quarters}; {by_the_end}"
+        );
     }
     // The minimum duration hides the lower quartiles.
-    let mut parts = vec![format!("{} chance of finishing on day {earliest}, the earliest", of_100(spread.at_earliest))];
+    let mut parts =
+        vec![format!("{} chance of finishing on day {earliest}, the earliest", of_100(spread.at_earliest))];
     if half > earliest {
         parts.push(format!("50% by day {half}"));
     }

@@ -126,15 +126,9 @@ mod tests {
         // The more expensive plan is determined by price, not by letter.
         call(&mut session, "set_prices", json!({"A": 30.5}));
         let turned = alike_lines(&session.company().observe());
-        assert!(
-            turned[0].starts_with("B and A now differ only in price ($22 and $30.50); "),
-            "{turned:?}"
-        );
+        assert!(turned[0].starts_with("B and A now differ only in price ($22 and $30.50); "), "{turned:?}");
         call(&mut session, "set_prices", json!({"A": 22}));
-        assert_eq!(
-            alike_lines(&session.company().observe()),
-            ["A and B are now identical: both cost $22"]
-        );
+        assert_eq!(alike_lines(&session.company().observe()), ["A and B are now identical: both cost $22"]);
         call(&mut session, "set_prices", json!({"A": 12}));
         session
             .advance_given(

@@ -189,7 +189,10 @@ fn quality_bank(seen: &SeenFigures<'_>) -> TermPicture {
 /// Charts the leads of all groups by week: by word of mouth and paid.
 fn network(weeks: &[ByGroup<GroupWeek>]) -> TermPicture {
     if weeks.is_empty() {
-        return TermPicture { caption: "No week has run yet, so there are no leads.".to_owned(), drawing: None };
+        return TermPicture {
+            caption: "No week has run yet, so there are no leads.".to_owned(),
+            drawing: None,
+        };
     }
     let by_week = |of: fn(&GroupWeek) -> u32| {
         let sum =
@@ -199,7 +202,10 @@ fn network(weeks: &[ByGroup<GroupWeek>]) -> TermPicture {
     TermPicture {
         caption: "Leads of all groups by week: by word of mouth, and through channels.".to_owned(),
         drawing: lines(
-            vec![("paid", by_week(GroupWeek::paid_leads)), ("word of mouth", by_week(|week| week.word_of_mouth))],
+            vec![
+                ("paid", by_week(GroupWeek::paid_leads)),
+                ("word of mouth", by_week(|week| week.word_of_mouth)),
+            ],
             Across::Weeks,
         ),
     }

@@ -26,12 +26,15 @@ pub fn heading(comparison: &BranchComparison, days_per_week: u32) -> String {
     let BranchComparison { from, until, recorded_until, .. } = comparison;
     let (first, last) = (from / days_per_week + 1, until.div_ceil(days_per_week));
     let beyond = match recorded_until < until {
-        true => format!(
-            "; days after {recorded_until} were not played: no further decisions, settings unchanged"
-        ),
+        true => {
+            format!("; days after {recorded_until} were not played: no further decisions, settings unchanged")
+        }
         false => String::new(),
     };
-    format!("re-simulation of weeks {first} to {last} (days {} to {until}), same random draws{beyond}", from + 1)
+    format!(
+        "re-simulation of weeks {first} to {last} (days {} to {until}), same random draws{beyond}",
+        from + 1
+    )
 }
 
 /// Describes a branch: number, name and the first day on which it differs.

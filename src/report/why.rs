@@ -111,18 +111,12 @@ mod tests {
         let price = Cause::Calls(ToolId::SetPrices);
         let told = why(WeekFigure::Cancellations, 195.0, 1137.0, &[(price, 938.0), (Cause::Rivals, 3.5)]);
         let equation_told = equation(&told);
-        assert_eq!(
-            equation_told,
-            "cancellations +942 = price +938 · rivals +3.5 · residual +0.5"
-        );
+        assert_eq!(equation_told, "cancellations +942 = price +938 · rivals +3.5 · residual +0.5");
         assert_eq!(heading(&told), "cancellations, week 20: 195 → 1,137");
         let short = Why { days: [7, 3], ..told };
         assert_eq!(heading(&short), "cancellations, week 20: 195 → 1,137 (of 3 days, the week before of 7)");
         let told = why(WeekFigure::Conversion, 0.2, 0.19, &[(price, -0.01), (Cause::Service, 0.0)]);
-        assert_eq!(
-            equation(&told),
-            "conversion -1.00 pt = price -1.00 pt · load and outages 0 · residual 0"
-        );
+        assert_eq!(equation(&told), "conversion -1.00 pt = price -1.00 pt · load and outages 0 · residual 0");
         let told = why(WeekFigure::CashChange, 100.0, -4_900.4, &[(Cause::Market, -5_000.0)]);
         assert_eq!(equation(&told), "cash change -$5,000 = market -$5,000 · residual 0");
     }

@@ -228,7 +228,9 @@ fn priced(lines: &[OfferLine], thread: &AskingThread, market: &Market) -> Result
             Price::Dollars(price) => price,
             Price::Asked(factor) => factor * thread.waiting.asked.ok_or("skipped: no price asked for")?,
             Price::List(factor) => factor * market.lists[plan as usize],
-            Price::Last(factor) => factor * last().ok_or("skipped: the last offer did not include that plan")?,
+            Price::Last(factor) => {
+                factor * last().ok_or("skipped: the last offer did not include that plan")?
+            }
         };
         let price = (price * 100.0).round() / 100.0;
         if price > 0.0 && price.is_finite() {

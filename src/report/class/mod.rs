@@ -159,8 +159,7 @@ impl ClassView<'_> {
             None => "final cash".to_owned(),
         };
         let goals: Vec<String> = lesson.plan.parts.iter().map(of_part).collect();
-        let mean =
-            if goals.len() > 1 { "; mean over the parts, 0 for unfinished ones" } else { "" };
+        let mean = if goals.len() > 1 { "; mean over the parts, 0 for unfinished ones" } else { "" };
         format!("{}, as a percentage of the reference play on the same seed{mean}", goals.join(" / "))
     }
 }

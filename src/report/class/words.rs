@@ -20,7 +20,9 @@ pub fn finding_in_words(finding: &ClassFinding) -> String {
             format!("{who}not collected: {place}{problem}")
         }
         ClassFinding::Altered { label, run, problem } => {
-            format!("{label}: run {run} was altered and does not count. {problem}. Ask the student to send it again")
+            format!(
+                "{label}: run {run} was altered and does not count. {problem}. Ask the student to send it again"
+            )
         }
         ClassFinding::Twice { label, run, paths } => {
             let paths: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
@@ -31,9 +33,7 @@ pub fn finding_in_words(finding: &ClassFinding) -> String {
             )
         }
         ClassFinding::OtherLesson { label, run } => {
-            format!(
-                "{label}: run {run} belongs to a different lesson or version of it and does not count"
-            )
+            format!("{label}: run {run} belongs to a different lesson or version of it and does not count")
         }
         ClassFinding::OtherHandout { label, run, of: Some(of) } => {
             format!(
@@ -41,9 +41,7 @@ pub fn finding_in_words(finding: &ClassFinding) -> String {
             )
         }
         ClassFinding::OtherHandout { label, run, of: None } => {
-            format!(
-                "{label}: run {run} does not continue the run that was handed out and does not count"
-            )
+            format!("{label}: run {run} does not continue the run that was handed out and does not count")
         }
         ClassFinding::Unknown { label, run, path } => {
             let who = label.as_deref().unwrap_or("unknown student");

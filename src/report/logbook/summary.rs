@@ -100,11 +100,7 @@ fn facts(book: &Logbook) -> Vec<Fact> {
             whole(book.wording.words as f64),
             failed(book.wording.ifs as u32, "if"),
         ),
-        Fact::new(
-            "Earlier runs with this seed",
-            book.earlier_runs.to_string(),
-            "in the same runs folder",
-        ),
+        Fact::new("Earlier runs with this seed", book.earlier_runs.to_string(), "in the same runs folder"),
     ]
 }
 
@@ -241,14 +237,9 @@ mod tests {
         let (session, lines) = crate::test_kit::recorded();
         let book = Logbook::of(&session, &lines, &[]);
         let text = crate::markdown::write(&page_of(&book));
-        for part in [
-            "P 07 played 2 weeks",
-            "not required",
-            "cash 0 s",
-            "set\\_prices",
-            "None.",
-            "price A: 0 → 12",
-        ] {
+        for part in
+            ["P 07 played 2 weeks", "not required", "cash 0 s", "set\\_prices", "None.", "price A: 0 → 12"]
+        {
             assert!(
                 text.contains(part) || text.contains(&part.replace('\\', "")),
                 "{part} is missing in\n{text}"

@@ -162,7 +162,8 @@ fn cheaper(
     let lower = situation.terms.models.iter().rev().filter(|model| model.tier < now.tier);
     let covered = lower.filter(|model| units * model.unit_cost < revenue).map(|model| {
         let cost = money(units * model.unit_cost);
-        let text = format!("model tier {} costs {cost} at the same usage and delivers lower quality", model.tier);
+        let text =
+            format!("model tier {} costs {cost} at the same usage and delivers lower quality", model.tier);
         (text, Place::Call(ToolId::SetModelTiers, json!({ plan.id(): model.tier })))
     });
     covered.into_iter().next().unwrap_or_else(|| {

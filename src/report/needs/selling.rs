@@ -440,7 +440,9 @@ fn better_quality(
         money(cost)
     );
     let told = match cost > at_risk {
-        true => format!("{reached}: more than the {} lost in four weeks, but the effect lasts", money(at_risk)),
+        true => {
+            format!("{reached}: more than the {} lost in four weeks, but the effect lasts", money(at_risk))
+        }
         false => reached,
     };
     spend.insert(group, DOLLARS);

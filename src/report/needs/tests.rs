@@ -113,7 +113,11 @@ fn quotas_of_zero_deliver_nothing() {
     let one = company(3, 1e6, &but(&[("set_usage_quotas", json!({"A": 2_000, "B": 0, "C": 9_000}))]), 0);
     let need = is_first(&one, Problem::NoQuota, &["plan B has a price and a quota of 0"]);
     let Place::Call(ToolId::SetUsageQuotas, arguments) = &need.place else { panic!("{need:?}") };
-    assert_eq!((&arguments["A"], &arguments["C"]), (&json!(2_000), &json!(9_000)), "the others are unchanged");
+    assert_eq!(
+        (&arguments["A"], &arguments["C"]),
+        (&json!(2_000), &json!(9_000)),
+        "the others are unchanged"
+    );
 }
 
 #[test]
@@ -127,8 +131,11 @@ fn without_ads_and_subscribers_no_lead_comes() {
 #[test]
 fn prices_above_every_budget_win_nobody() {
     let session = company(3, 1e6, &but(&[("set_prices", json!({"A": 900, "B": 950, "C": 990}))]), 2);
-    let need =
-        is_first(&session, Problem::NoSales(group("S1")), &["none signed", "price: the lowest is $900 for A"]);
+    let need = is_first(
+        &session,
+        Problem::NoSales(group("S1")),
+        &["none signed", "price: the lowest is $900 for A"],
+    );
     let Place::Call(ToolId::SetPrices, arguments) = &need.place else { panic!("{need:?}") };
     let budget = session.params().group(group("S1")).c_max_mean;
     let price = arguments["A"].as_f64().expect("a price");
@@ -252,7 +259,8 @@ fn outages_that_operations_would_make_rarer_are_reported_with_the_spend() {
         play(&mut session, 1);
     }
     let words = "with operations at $0 a day, 3.0% of days have one";
-    let need = is_first(&session, Problem::Outages, &["outages took", words, "$350 a day reduce this to 1.5%"]);
+    let need =
+        is_first(&session, Problem::Outages, &["outages took", words, "$350 a day reduce this to 1.5%"]);
     let Place::Call(ToolId::SetDailySpend, arguments) = &need.place else { panic!("{need:?}") };
     let dollars = arguments["operations"].as_f64().expect("dollars");
     let share = session.company().outage_share(dollars);
@@ -355,11 +363,8 @@ fn four_weeks_of_cash_come_before_everything_else() {
     let session = company(3, 400_000.0, &sound(), 1);
     let seen = session.company().observe();
     assert!(seen.runway_weeks.is_some_and(|weeks| (2.0..6.0).contains(&weeks)), "{:?}", seen.runway_weeks);
-    let need = is_first(
-        &session,
-        Problem::Runway,
-        &["cash lasts", "the largest budget is targeted development"],
-    );
+    let need =
+        is_first(&session, Problem::Runway, &["cash lasts", "the largest budget is targeted development"]);
     let Place::Call(ToolId::SetTargetedDevSpend, arguments) = &need.place else { panic!("{need:?}") };
     let proposed = arguments["targeted_spend"]["S1"].as_f64().expect("an amount");
     let told = format!("at {} a day, cash lasts 8 weeks", crate::words::money(proposed));
@@ -391,7 +396,10 @@ fn companies_that_no_plan_is_good_enough_for_are_found() {
     assert!(!found.is_empty(), "{:#?}", needs(&session));
     assert!(found.iter().all(|need| need.text.contains("none requested an offer")), "{found:#?}");
     // All seats of an enterprise share one quota.
-    assert!(found.iter().any(|need| need.text.contains("mean usage of the smallest enterprises")), "{found:#?}");
+    assert!(
+        found.iter().any(|need| need.text.contains("mean usage of the smallest enterprises")),
+        "{found:#?}"
+    );
 }
 
 #[test]

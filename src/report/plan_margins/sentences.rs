@@ -42,10 +42,7 @@ fn of_plan(
     let mut line = format!(
         "plan {plan} on model tier {}: {}",
         set.tier,
-        on_own(
-            &|unit_cost| own.margin(unit_cost),
-            &format!("the {} a seat and month paid now", cents(paid))
-        )
+        on_own(&|unit_cost| own.margin(unit_cost), &format!("the {} a seat and month paid now", cents(paid)))
     );
     if is_at_list {
         line += &format!("; {}", on_own(&at_list, &format!("the list price of {}", cents(set.price))));

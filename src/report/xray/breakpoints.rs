@@ -42,7 +42,9 @@ pub fn stop_in_words(run: &RunUntil, day: u32, breakpoints: usize) -> Vec<String
             vec![format!("{ran}; none of the {count} breakpoints was ever true")]
         }
         (true, 1) if run.true_before.iter().all(|own| own.began.is_some()) => {
-            vec![format!("{ran}; the breakpoint did not become true: it was true at its figure's first value")]
+            vec![format!(
+                "{ran}; the breakpoint did not become true: it was true at its figure's first value"
+            )]
         }
         (true, 1) => vec![format!("{ran}; the breakpoint did not become true: it was true before")],
         (true, count) => vec![format!("{ran}; none of the {count} breakpoints became true")],

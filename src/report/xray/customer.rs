@@ -50,7 +50,10 @@ fn headline(lens: &CustomerLens) -> String {
             format!("cancelled on day {day}: no plan is acceptable; {}", would_have_stayed(turning, lens))
         }
         (_, None) => {
-            format!("day {day} is not a billing day; no plan would be acceptable: {}", would_have_stayed(turning, lens))
+            format!(
+                "day {day} is not a billing day; no plan would be acceptable: {}",
+                would_have_stayed(turning, lens)
+            )
         }
         (outcome, Some(best)) => {
             let what = match outcome {

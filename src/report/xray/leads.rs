@@ -19,10 +19,7 @@ pub fn leads_in_words(days: &[LeadEquation], held: &[(LeadFactor, f64)]) -> Vec<
     lines.push(equation(own));
     lines.extend(LeadFactor::ALL.map(|factor| over_days(days, factor)));
     if own.is_without_limit {
-        lines.push(
-            "  D is always 1: base_market_cap is 0, so the market has no size limit"
-                .to_owned(),
-        );
+        lines.push("  D is always 1: base_market_cap is 0, so the market has no size limit".to_owned());
     }
     let by_group = own.word_of_mouth.iter().map(|(group, leads)| format!("{group} {leads:.3}"));
     let by_group: Vec<String> = by_group.collect();

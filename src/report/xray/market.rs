@@ -21,7 +21,8 @@ pub fn rivals_in_words(own: &RivalState) -> Vec<String> {
     if !banks.is_empty() {
         lines.extend(table(&["group", "own improvements", "not copied"], &banks));
     }
-    lines.push(format!("  competitors and drift have added {everyone:+.4} to the expectations of all groups"));
+    lines
+        .push(format!("  competitors and drift have added {everyone:+.4} to the expectations of all groups"));
     lines.extend(moves(own));
     lines.extend(match &own.next {
         Some(next) => next_move(next, own),

@@ -18,7 +18,9 @@ pub fn satisfaction_in_words(own: &SatisfactionEquation) -> Vec<String> {
             ));
             lines.extend(terms(own));
         }
-        _ => lines.push("  no experience today: there were no subscribers at the start of the day".to_owned()),
+        _ => {
+            lines.push("  no experience today: there were no subscribers at the start of the day".to_owned())
+        }
     }
     let moved = match (own.evening, own.after()) {
         (Some(evening), Some(after)) => format!("mean {evening:.4} ({:+.4})", evening - after),

@@ -14,8 +14,7 @@ pub fn streams_in_words(own: &NextDraws) -> Vec<String> {
     let over = if own.is_over { "; the run has ended, so this day is not simulated" } else { "" };
     let mut lines = vec![format!("next draws of {}, day {day}{over}", part.id())];
     if own.is_replayed {
-        lines
-            .push("  a recorded series replaces these draws for its length".to_owned());
+        lines.push("  a recorded series replaces these draws for its length".to_owned());
     }
     match streams.iter().any(|own| own.draws.len() > SHOWN_DRAWS) {
         true => streams.iter().for_each(|own| lines.extend(in_full(own))),

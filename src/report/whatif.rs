@@ -318,9 +318,9 @@ mod tests {
         assert_eq!(
             told,
             [
-                "week 2: set_prices {\"B\":9.5} is new; the run calls set_prices again in week 3 (line 20)",
+                "week 2: set_prices {\"B\":9.5} is added; the run calls set_prices again in week 3 (line 20)",
                 "weeks 2 to 4: set_prices {\"B\":10.0} → {\"B\":9.5} (2 calls)",
-                "week 3: set_prices {\"B\":30.0} is not made (line 20)",
+                "week 3: set_prices {\"B\":30.0} is skipped (line 20)",
             ]
         );
     }

@@ -456,7 +456,7 @@ mod tests {
             ("accept asked >= x", 17, "number is expected"),
             ("accept asked is 3", 17, "null"),
             ("accept seats in 3", 17, "list"),
-            ("reject rest reject rest", 13, "put ;"),
+            ("reject rest reject rest", 13, "separate rules with ;"),
             ("reject where größe > 3", 14, "unknown field"),
             ("reject where seats ? 3", 20, "unexpected character"),
             ("reject where seats < 1,000", 22, "write 1000 or 1_000"),

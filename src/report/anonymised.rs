@@ -1,4 +1,4 @@
-//! Anonymised tables of a study: new labels and run names, times relative to the start of each run, no texts written
+//! Anonymized tables of a study: new labels and run names, times relative to the start of each run, no texts written
 //! by people, and renamed machines.
 //!
 //! All new names derive from a secret that the experimenter keeps, so tables collected later are consistent. Each run
@@ -34,7 +34,7 @@ pub struct Link {
     pub new_run: String,
     /// Hash of the last line of the original.
     pub last_hash: String,
-    /// Hash of `last_hash`, as in the anonymised table.
+    /// Hash of `last_hash`, as in the anonymized table.
     pub original: String,
 }
 
@@ -51,7 +51,7 @@ const DESIGN: [&str; 2] = ["seed", "condition"];
 /// Columns that join the tables.
 const NEEDED: [&str; 2] = ["run", "participant"];
 
-/// The result of anonymisation.
+/// The result of anonymization.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Anonymous {
     /// The tables.
@@ -77,12 +77,12 @@ pub struct Anonymiser {
 }
 
 impl Anonymiser {
-    /// Returns an anonymiser that also omits the columns `without` from every table.
+    /// Returns an anonymizer that also omits the columns `without` from every table.
     pub fn new(secret: [u8; 32], texts: Texts, without: Vec<String>) -> Anonymiser {
         Anonymiser { secret, texts, without, began: BTreeMap::new(), came: BTreeMap::new() }
     }
 
-    /// Returns the anonymised tables of an export or a collection, and the links to the originals.
+    /// Returns the anonymized tables of an export or a collection, and the links to the originals.
     ///
     /// # Errors
     /// Returns an error if a table or column is missing, or if two names would become the same.

@@ -23,7 +23,7 @@ const MOST_SETTINGS: usize = 6;
 /// Number of calls of a tool that are listed.
 const MOST_CALLS: usize = 2;
 
-/// Summarises the result of the part in a sentence.
+/// Summarizes the result of the part in a sentence.
 pub fn headline(own: &Debrief) -> String {
     let last = |cash: &[f64]| money(cash.last().copied().unwrap_or(0.0));
     let day = own.own.len().saturating_sub(1);
@@ -278,7 +278,7 @@ fn paragraphs(text: &str) -> Vec<String> {
     text.split("\n\n").map(plain).filter(|paragraph| !paragraph.is_empty()).collect()
 }
 
-/// Returns the glossary terms that a Markdown text emphasises, each once.
+/// Returns the glossary terms that a Markdown text emphasizes, each once.
 pub fn named_terms(text: &str) -> Vec<&'static Term> {
     let mut found: Vec<&'static Term> = Vec::new();
     let flat = text.split_whitespace().collect::<Vec<_>>().join(" ");

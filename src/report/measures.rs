@@ -1,4 +1,4 @@
-//! The behaviour measures of the paper, as far as they follow from visible data. One function for each.
+//! The behavior measures of the paper, as far as they follow from visible data. One function for each.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -31,7 +31,7 @@ pub const PLANNING_WORDS: [&str; 16] = [
     "instead",
 ];
 
-/// All behaviour measures of a run.
+/// All behavior measures of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Measures {
     /// Number of days that the company survived.

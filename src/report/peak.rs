@@ -1,5 +1,5 @@
 //! Projected peak usage of next week: the busiest day of the last week times its growth over the busiest day of the
-//! week before. It is labelled as a projection wherever it is shown.
+//! week before. It is labeled as a projection wherever it is shown.
 
 use super::words::whole;
 use novamind_base::notation::percent;

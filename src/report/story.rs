@@ -1,4 +1,4 @@
-//! Data of a run report: result, course, decisions and behaviour.
+//! Data of a run report: result, course, decisions and behavior.
 
 use super::books::Books;
 use super::chapters::{Chapter, chapters};
@@ -46,7 +46,7 @@ pub struct Story {
     pub chapters: Vec<Chapter>,
     /// Notable days.
     pub highlights: Vec<Highlight>,
-    /// Behaviour measures.
+    /// Behavior measures.
     pub measures: Measures,
     /// Analysis of the bankruptcy, if there was one.
     pub ruin: Option<Ruin>,

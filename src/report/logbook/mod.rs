@@ -98,7 +98,7 @@ pub struct Logbook {
     pub after_end: Option<TimeSpent>,
     /// Word counts of all rationales.
     pub wording: Wording,
-    /// Behaviour measures.
+    /// Behavior measures.
     pub measures: Measures,
     /// Advertising by group and channel.
     pub ads: Vec<ChannelRow>,

@@ -149,7 +149,7 @@ fn rules(study: &Study) -> String {
     let rules = study.rules();
     let yes = |on: bool| if on { "yes" } else { "no" };
     let results = match rules.results {
-        ResultsShown::None => "that the run is over",
+        ResultsShown::None => "that the run has ended",
         ResultsShown::Own => "the participant's own result",
         ResultsShown::Published => "the participant's own result and published ones",
     };
@@ -185,7 +185,7 @@ fn rules(study: &Study) -> String {
             yes(study.protocol.session.tour)
         );
     }
-    text += &format!("| Stopping the clock requires a reason | {} |\n", yes(rules.pause_reason));
+    text += &format!("| Stopping the clock asks for a reason | {} |\n", yes(rules.pause_reason));
     text + &limits(&rules.limits)
 }
 

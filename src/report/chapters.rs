@@ -16,7 +16,7 @@ pub struct Chapter {
     pub last_week: u32,
     /// Decision day.
     pub day: u32,
-    /// Last day that ran.
+    /// Last simulated day.
     pub until: u32,
     /// First line of the rationale.
     pub why: String,
@@ -26,7 +26,7 @@ pub struct Chapter {
     pub deeds: Vec<String>,
     /// Cash at the end, dollars.
     pub cash: f64,
-    /// Its change, dollars.
+    /// Change of cash, dollars.
     pub cash_change: f64,
 }
 

@@ -95,7 +95,7 @@ pub struct BestChannel {
     pub channel: String,
     /// Leads per thousand dollars.
     pub leads_per_thousand: f64,
-    /// Share of the group's ad spend on it.
+    /// Share of the group's advertising on this channel.
     pub share: f64,
 }
 

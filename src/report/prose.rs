@@ -8,7 +8,7 @@ use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 pub enum Face {
     /// Plain text.
     Text,
-    /// Emphasised.
+    /// Emphasized.
     Strong,
     /// A heading.
     Heading,

@@ -14,7 +14,7 @@ use novamind_record::trajectory::record::Ended;
 /// A figure with its label.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct CardFigure {
-    /// The figure.
+    /// Formatted value.
     value: String,
     /// Label, with the day.
     name: String,

@@ -46,7 +46,7 @@ pub struct Logbook {
     pub start_cash: f64,
     /// Format version of its trajectory.
     pub format: u32,
-    /// The study it belongs to.
+    /// Study of the run.
     pub study: Option<StudyStamp>,
     /// Program version that recorded it.
     pub version: String,
@@ -58,7 +58,7 @@ pub struct Logbook {
     pub voice: Option<ModelStamp>,
     /// Number of earlier runs with this seed and scenario on the machine.
     pub earlier_runs: u32,
-    /// Run it branched from.
+    /// Parent run.
     pub parent: Option<String>,
     /// The policy that decided all weeks; `None` if anyone else decided one.
     pub policy: Option<String>,

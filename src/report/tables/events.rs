@@ -1,4 +1,4 @@
-//! `events.csv`: a row for each line of a run, and of what was done after its end.
+//! `events.csv`: a row for each line of a run, including lines recorded after its end.
 
 use super::answers::value_in_words;
 use super::column::{Column, columns};

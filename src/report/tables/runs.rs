@@ -1,4 +1,4 @@
-//! The columns of `runs.csv`.
+//! Columns of `runs.csv`: a row for each run.
 
 use super::column::{Column, columns};
 use super::{in_console, pairs, rounded, score, screens, seen, tools};

@@ -1,4 +1,4 @@
-//! The columns of `weeks.csv`.
+//! Columns of `weeks.csv`: a row for each week of a run.
 
 use super::column::{Column, columns};
 use super::{in_console, screens, seen, tools};

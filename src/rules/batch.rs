@@ -85,7 +85,7 @@ impl Sums {
                 .map_or(String::new(), |margin| format!(", margin after compute {}", percent(margin, 0)));
         }
         if self.above_quota > 0 {
-            words += &format!(", {} above the quota of a plan offered", count(self.above_quota));
+            words += &format!(", {} above the quota of an offered plan", count(self.above_quota));
         }
         if self.skipped > 0 {
             words += &format!(", {} skipped", count(self.skipped));

@@ -14,7 +14,7 @@ const LISTED_DAYS: usize = 7;
 /// Describes the headline, curve, plans today and at the last bill, satisfaction and events.
 pub fn customer_in_words(lens: &CustomerLens) -> Vec<String> {
     let first = &lens.first;
-    let came = format!("arrived on day {} by {}", first.day, first.source.id());
+    let came = format!("arrived on day {} through {}", first.day, first.source.id());
     let mut lines = vec![format!("customer {} · {} · {came}", lens.customer, lens.group), headline(lens)];
     let Some(shown) = lens.shown() else {
         lines.extend(first_in_words(first));

@@ -145,7 +145,6 @@ fn of_column(table: &'static Table, column: &'static Column) -> Parts {
     (format!("column of {}", table.name), sections, related, &[])
 }
 
-/// Capitalizes the first letter and adds a full stop.
 fn sentence(text: &str) -> String {
     let mut letters = text.trim_end_matches('.').chars();
     match letters.next() {

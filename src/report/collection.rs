@@ -123,7 +123,6 @@ pub fn collect(what: Collecting<'_>, progress: &mut dyn FnMut(usize, usize)) -> 
     Ok(collected)
 }
 
-/// Replays a run, seals it and adds it to the tables.
 fn take(
     run: &FoundRun,
     out: &Path,
@@ -140,7 +139,6 @@ fn take(
     Ok((seal, archive))
 }
 
-/// Seals each of several contradicting records separately.
 fn keep_apart(
     conflicts: &BTreeMap<String, Vec<FoundRun>>,
     out: &Path,

@@ -157,7 +157,6 @@ impl Obstacle {
         }
     }
 
-    /// Names the kind of reason, for counts over several runs.
     fn kind(&self) -> &'static str {
         match self {
             Obstacle::Lesson => "part of a lesson",

@@ -8,7 +8,6 @@ use novamind_session::identifiers::{ByPlan, Plan};
 /// Interval between the points that become rows.
 const ROW_EVERY: usize = 6;
 
-/// Shown if no quality is sufficient.
 const NOBODY: &str = "–";
 
 /// Describes the source of the curve: `estimates of day 0, ±65%`.

@@ -7,7 +7,6 @@ use novamind_base::notation::cents;
 use novamind_session::CompanyNames;
 use novamind_tools::ToolId;
 
-/// Number of deals of a call that are listed.
 const TOLD: usize = 3;
 
 /// Describes the deals of a call. `None` for other tools and for arguments without deals.

@@ -17,10 +17,8 @@ use novamind_record::trajectory::record::Ended;
 use novamind_session::CompanyNames;
 use novamind_tools::ToolId;
 
-/// Number of settings of a tool that are listed.
 const MOST_SETTINGS: usize = 6;
 
-/// Number of calls of a tool that are listed.
 const MOST_CALLS: usize = 2;
 
 /// Summarizes the result of the part in a sentence.
@@ -48,7 +46,6 @@ pub fn headline(own: &Debrief) -> String {
     own.judged_by.as_ref().and_then(judged_in_words).map_or(cash.clone(), |judged| format!("{judged} {cash}"))
 }
 
-/// Describes the figure by which the part is judged.
 fn judged_in_words(judged: &JudgedFigure) -> Option<String> {
     let last = |curve: &[(u32, f64)]| curve.last().map(|(_, value)| of_figure(judged.figure, *value));
     let (day, _) = judged.own.last()?;
@@ -124,7 +121,6 @@ pub fn comparison_in_words(own: &Debrief) -> Vec<String> {
     }
 }
 
-/// Compares the use of one tool in both plays.
 fn decision_in_words(decision: &PartedDecision, names: &CompanyNames) -> String {
     let said = match &decision.difference {
         DecisionContrast::Settings { settings } => {
@@ -162,7 +158,6 @@ fn written(value: &Value) -> String {
     }
 }
 
-/// Describes calls of one tool by their arguments.
 fn calls_in_words(tool: ToolId, calls: &[Value], names: &CompanyNames) -> String {
     let one = |call: &Value| {
         if let Some(words) = deals_in_words(tool, call, names) {
@@ -260,7 +255,6 @@ fn effort(step: &DebriefStep) -> String {
     format!("{tries}, {used} of {}", count(all as u32, "hint"))
 }
 
-/// States which seeds the figures in the text come from.
 fn figures_in_text(own: &Debrief) -> String {
     let (from, to) = (MEASURED_SEEDS.start(), MEASURED_SEEDS.end());
     format!(
@@ -269,7 +263,6 @@ fn figures_in_text(own: &Debrief) -> String {
     )
 }
 
-/// Splits Markdown into paragraphs without markup.
 fn paragraphs(text: &str) -> Vec<String> {
     let plain = |paragraph: &str| {
         let words: Vec<&str> = paragraph.split_whitespace().collect();

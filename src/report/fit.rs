@@ -368,7 +368,6 @@ fn lack_in_words((concern, amount): (Concern, f64)) -> String {
     }
 }
 
-/// Describes the list price and the prices after promotions.
 fn price_in_words(own: &PlanFit) -> String {
     let list = price_to_cents(own.list);
     let mut less = Vec::new();

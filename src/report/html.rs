@@ -4,7 +4,6 @@ use super::page::{Bar, Block, Fact, Page, Table};
 use super::svg;
 use novamind_base::notation::escaped_html;
 
-/// CSS of the page.
 pub(super) const STYLE: &str = include_str!("../../assets/report.css");
 
 /// Returns the page as HTML.
@@ -43,11 +42,8 @@ pub fn write(page: &Page) -> String {
 /// Number of sections that start expanded; with more of them, all start collapsed.
 const MOST_UNFOLDED: usize = 12;
 
-/// State that affects how blocks are written.
 struct Shape {
-    /// Number of charts written.
     charts: usize,
-    /// Sections start expanded.
     unfolded: bool,
 }
 
@@ -140,7 +136,6 @@ mod tests {
     use super::*;
     use crate::{Story, as_html, as_markdown, test_kit};
 
-    /// Checks that elements are opened and closed in matching order.
     fn check(html: &str) {
         let mut open: Vec<&str> = Vec::new();
         let mut rest = html.strip_prefix("<!DOCTYPE html>").expect("a document type");

@@ -7,7 +7,6 @@ use super::fit::Fit;
 use super::words::range;
 use novamind_session::truth_behind;
 
-/// Fields that contain estimates.
 const ESTIMATED: [&str; 3] = ["estimates", "network_influence", "reputation_influence"];
 
 /// Returns the answer about a group with ranges in place of estimates, and their day.

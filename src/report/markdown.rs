@@ -4,12 +4,9 @@ use super::page::{Bar, Block, Chart, Curve, Page, Plot, Table};
 use super::plot::{LEVELS, level};
 use novamind_base::notation::acts;
 
-/// Width of a full bar in characters.
 const BAR: usize = 24;
-/// Width of a trend in characters.
 const TREND: usize = 60;
 
-/// Returns the page as Markdown.
 pub fn write(page: &Page) -> String {
     let tags: Vec<String> = page.tags.iter().map(|tag| escaped(tag)).collect();
     let mut parts = vec![
@@ -54,7 +51,6 @@ fn list(lines: &[String]) -> String {
     lines.iter().map(|line| format!("- {}", escaped(line))).collect::<Vec<_>>().join("\n")
 }
 
-/// Writes a table with aligned columns.
 fn table(table: &Table) -> String {
     let head: Vec<String> = table.columns.iter().map(|(name, _)| escaped(name)).collect();
     let rows: Vec<Vec<String>> =
@@ -122,7 +118,6 @@ fn trend(values: &[f64]) -> String {
     trend_between(&sizes, extremes(&sizes))
 }
 
-/// Samples the values down to the width of a row.
 fn picked(values: &[f64]) -> Vec<f64> {
     let count = values.len().min(TREND);
     (0..count).map(|at| values[at * (values.len() - 1) / (count - 1).max(1)]).collect()

@@ -11,7 +11,6 @@ use novamind_base::notation::{capital, grouped, percent, signed_dollars};
 use novamind_record::trajectory::record::Ended;
 use novamind_session::ModelStamp;
 
-/// Returns the page of a run report.
 pub fn page_of(story: &Story) -> Page {
     let seen = &story.seen;
     let mut blocks = Vec::new();

@@ -17,9 +17,7 @@ use novamind_session::{Session, query_refusal};
 use novamind_tools::{Refusal, ToolId};
 
 const SUBSCRIBERS: &str = include_str!("../../assets/readings/subscribers.sql");
-/// Units on the last day by group and plan.
 const USAGE: &str = include_str!("../../assets/readings/usage.sql");
-/// Days per billing month.
 const MONTH: f64 = 30.0;
 /// Shown in place of margins until usage has been measured.
 const NOTHING_MEASURED: &str = "no margins: usage has not been measured yet";
@@ -75,7 +73,6 @@ impl PlanUse {
         }
     }
 
-    /// Returns revenue a month and seat if usage was measured.
     fn measured_revenue(&self) -> Option<f64> {
         self.revenue().filter(|_| self.usage().is_some())
     }
@@ -92,7 +89,6 @@ impl PlanUse {
     }
 }
 
-/// Returns the share of a price left after compute.
 fn margin(price: f64, compute: f64) -> Option<f64> {
     (price > 0.0).then(|| 1.0 - compute / price)
 }
@@ -139,7 +135,6 @@ impl Sales {
         });
     }
 
-    /// Returns whether any usage has been measured.
     fn is_measured(&self) -> bool {
         Plan::ALL.into_iter().any(|plan| self.of_plan(plan).usage().is_some())
     }
@@ -149,7 +144,6 @@ impl Sales {
         self.sum(|_, own| own == plan)
     }
 
-    /// Returns the figures of each group, in the order of the groups.
     fn by_group(&self, plan: Plan) -> Vec<(Group, PlanUse)> {
         let of = |group: Group| (group, self.sum(|own, of| own == group && of == plan));
         Group::all().map(of).filter(|(_, own)| own.customers > 0.0).collect()

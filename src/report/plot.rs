@@ -47,10 +47,8 @@ pub struct Frame {
     pub up: AxisScale,
 }
 
-/// Frame of charts in reports.
 const OF_REPORTS: Frame = Frame { width: 81, height: 14, across: AxisScale::Linear, up: AxisScale::Linear };
 
-/// Width of the labels and the axis on the left.
 const LABELS: usize = 11;
 
 /// Bar heights of a sparkline, lowest first.
@@ -72,7 +70,6 @@ pub struct Drawn<'a> {
     pub is_line: bool,
 }
 
-/// Draws series; empty without points.
 pub(super) fn plot(drawn: &[Drawn<'_>]) -> String {
     plot_in(&OF_REPORTS, drawn)
 }

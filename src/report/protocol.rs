@@ -189,7 +189,6 @@ fn rules(study: &Study) -> String {
     text + &limits(&rules.limits)
 }
 
-/// Returns the rows about time limits.
 fn limits(limits: &TimeLimits) -> String {
     let all = [
         ("Active minutes per week of the company", limits.week_minutes),
@@ -216,7 +215,6 @@ fn limits(limits: &TimeLimits) -> String {
     )
 }
 
-/// Returns the section about classes of time, with the thresholds in force.
 fn time() -> String {
     format!(
         "## Time\n\n\

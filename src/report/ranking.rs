@@ -148,7 +148,6 @@ pub fn published_targeted_shares() -> (f64, f64) {
     shares.fold((1.0, 0.0), |(least, most), share| (f64::min(least, share), f64::max(most, share)))
 }
 
-/// Describes the terms of the published runs and this run's seed if it differs.
 fn caveat(seen: &Observation) -> Option<String> {
     let own = match seen.seed {
         Some(PUBLISHED_SEED) => return None,

@@ -12,7 +12,6 @@ use novamind_record::rules::{ResultsShown, SessionRules};
 use novamind_record::trajectory::record::Ended;
 use novamind_session::{Observation, ScoredForecast, Session, filed_forecasts};
 
-/// Analysis of a bankruptcy.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ruin {
     /// Day on which cash fell below zero.
@@ -50,7 +49,7 @@ pub struct Story {
     pub measures: Measures,
     /// Analysis of the bankruptcy, if there was one.
     pub ruin: Option<Ruin>,
-    /// Mode of the run.
+    /// Rules of the session.
     pub rules: SessionRules,
     /// Origin of the run if it is a branch.
     pub origin: Option<BranchOrigin>,

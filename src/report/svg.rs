@@ -12,7 +12,6 @@ const WIDTH: f64 = 760.0;
 const LEFT: f64 = 66.0;
 const RIGHT: f64 = 14.0;
 const BOTTOM: f64 = 40.0;
-/// Height of the plot area.
 const INSIDE: f64 = 220.0;
 const LEGEND_ROW: f64 = 20.0;
 /// Approximate width of a character in the legend.
@@ -65,7 +64,6 @@ impl Scale {
         Scale { from, to, step, kind: AxisScale::Linear }
     }
 
-    /// Returns a scale for an axis of a kind.
     fn of_kind(kind: AxisScale, values: impl Iterator<Item = f64>, steps: f64, round_ends: bool) -> Scale {
         let own = Scale::of(values.map(|value| kind.placed(value)), steps, round_ends);
         match kind {
@@ -111,7 +109,6 @@ fn round_step(least: f64) -> f64 {
     fitting.unwrap_or(10.0) * magnitude
 }
 
-/// Geometry of the plot area.
 struct Sheet {
     x: Scale,
     y: Scale,
@@ -166,7 +163,6 @@ pub fn standing_alone(title: &str, parts: &[ChartPart]) -> String {
     )
 }
 
-/// Draws a chart with its legend and returns its height.
 fn drawn(chart: &Chart, kinds: Axes) -> (String, f64) {
     let keys = legend_keys(chart);
     let (mut svg, rows) = legend(&keys);
@@ -330,7 +326,6 @@ fn draw_stacks(svg: &mut String, at: &[f64], parts: &[Part], chart: &Chart, shee
     }
 }
 
-/// Appearance of a legend key.
 enum Sign {
     Line(usize),
     Area(String),
@@ -349,7 +344,6 @@ fn legend_keys(chart: &Chart) -> Vec<(Sign, String)> {
     }
 }
 
-/// Draws the legend and returns its number of rows.
 fn legend(keys: &[(Sign, String)]) -> (String, f64) {
     let mut svg = String::new();
     let (mut x, mut row) = (LEFT, 0.0);
@@ -436,10 +430,8 @@ mod tests {
         rest.split('"').next().expect("a value").parse().unwrap_or_else(|_| panic!("{name} in {tag}"))
     }
 
-    /// Values and coordinates of an axis's ticks.
     type Ticks = Vec<(f64, f64)>;
 
-    /// Returns the ticks of a chart: vertical, then horizontal axis.
     fn ticks(svg: &str) -> (Ticks, Ticks) {
         let label = |text: &str| -> Option<f64> {
             text.split('>').nth(1)?.split('<').next()?.replace(['$', ','], "").parse().ok()

@@ -10,11 +10,9 @@ use novamind_session::identifiers::{ByGroup, Group, Plan};
 use novamind_session::{DeliveredQuality, GroupWeek, Session};
 use novamind_tools::Numbers;
 
-/// Example of a change in reputation.
 const CHANGE: f64 = 0.1;
 /// Weeks over which a cohort is followed.
 const WEEKS: u32 = 26;
-/// Length of the longest bar in characters.
 const BAR: f64 = 30.0;
 
 /// Figures of a run that are visible to its player.

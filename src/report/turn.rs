@@ -8,9 +8,7 @@ use novamind_record::figures::WeekFigures;
 /// Total of one kind of cost over the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cost {
-    /// Kind of cost.
     pub name: &'static str,
-    /// Dollars.
     pub dollars: f64,
     /// Share of all costs.
     pub share: f64,

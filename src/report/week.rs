@@ -86,9 +86,7 @@ enum Unit {
     Count,
     Units,
     Minutes,
-    /// A share of the leads.
     ShareOfLeads,
-    /// Another share.
     Share,
 }
 
@@ -120,7 +118,6 @@ impl Unit {
     }
 }
 
-/// Daily costs.
 const RUNNING: [Category; 5] = [
     Category::Capacity,
     Category::Compute,
@@ -280,7 +277,6 @@ fn moves(sources: &Sources<'_>, week: &WeekFigures) -> Vec<Move> {
     moves
 }
 
-/// Returns the changes of some costs, largest first.
 fn split(categories: &[Category], before: &Booked, now: &Booked) -> Vec<(&'static str, f64)> {
     let mut changes: Vec<(&'static str, f64)> = categories
         .iter()
@@ -291,7 +287,6 @@ fn split(categories: &[Category], before: &Booked, now: &Booked) -> Vec<(&'stati
     changes
 }
 
-/// Returns the forecasts for a day with known cash, shortest horizon first.
 fn due(sources: &Sources<'_>, day: u32) -> Vec<ScoredForecast> {
     let mut due = filed_forecasts(sources.journal, sources.cash_by_day);
     due.retain(|forecast| forecast.due() == day && forecast.outcome.is_some());

@@ -81,7 +81,6 @@ fn parameter(own: &ParameterDifference, week: u32) -> String {
     }
 }
 
-/// Groups calls that differ in the same way.
 fn alike(differences: &[DecisionDifference]) -> Vec<Vec<&DecisionDifference>> {
     let mut all: Vec<Vec<&DecisionDifference>> = Vec::new();
     for call in differences {
@@ -134,7 +133,6 @@ pub fn table(comparison: &BranchComparison, days_per_week: u32) -> (Vec<String>,
     table_of(comparison, days_per_week, cell)
 }
 
-/// Returns headers and rows with a cell for each milestone, figure and branch.
 fn table_of(
     comparison: &BranchComparison,
     days_per_week: u32,

@@ -3,7 +3,6 @@
 use super::thread::AskingThread;
 use novamind_session::identifiers::Plan;
 
-/// A field of a thread.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Field {
     Group,
@@ -36,7 +35,6 @@ pub(super) const FIELDS: [(&str, Field); 13] = [
     ("customer", Field::Customer),
 ];
 
-/// Value of a field.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Value {
     Number(f64),
@@ -72,7 +70,6 @@ fn lowest(offer: &[(Plan, f64)]) -> Option<f64> {
     offer.iter().map(|(_, price)| *price).reduce(f64::min)
 }
 
-/// Comparison operator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Comparison {
     Equal,
@@ -111,7 +108,6 @@ pub(super) enum Condition {
 }
 
 impl Condition {
-    /// Returns whether a thread meets the condition.
     pub(super) fn holds(&self, thread: &AskingThread) -> bool {
         match self {
             Condition::Compared(field, comparison, value) => {

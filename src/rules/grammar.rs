@@ -5,7 +5,6 @@ use super::thread::AskingThread;
 use novamind_base::nearest;
 use novamind_session::identifiers::Plan;
 
-/// Maximum number of plans in an offer.
 const MOST_LINES: usize = 3;
 /// Enterprise groups that every run knows. Discovered ones start with `D_E`.
 const FIRST_GROUPS: [&str; 3] = ["E1", "E2", "E3"];
@@ -22,13 +21,11 @@ pub struct Rule {
 }
 
 impl Rule {
-    /// Returns whether the rule matches a thread.
     pub(super) fn means(&self, thread: &AskingThread) -> bool {
         self.conditions.iter().all(|condition| condition.holds(thread))
     }
 }
 
-/// Action of a rule.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Action {
     Offer(Vec<OfferLine>),
@@ -36,7 +33,6 @@ pub(super) enum Action {
     Reject,
 }
 
-/// A plan with a price.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct OfferLine {
     /// `None` for the plan that the enterprise asked for.
@@ -44,7 +40,6 @@ pub(super) struct OfferLine {
     pub(super) price: Price,
 }
 
-/// A price in dollars, or a factor of another price.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Price {
     Dollars(f64),
@@ -103,7 +98,6 @@ pub(super) fn conditions(text: &str) -> Result<Vec<Condition>, Problem> {
 #[derive(Debug, Clone, PartialEq)]
 struct Token {
     text: String,
-    /// Byte range.
     from: usize,
     to: usize,
 }
@@ -225,7 +219,6 @@ impl Reader<'_> {
         self.joined()
     }
 
-    /// Parses conditions joined with `and`.
     fn joined(&mut self) -> Result<Vec<Condition>, Problem> {
         let mut conditions = vec![self.condition()?];
         while self.take("and") {

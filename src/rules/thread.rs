@@ -14,7 +14,6 @@ use novamind_tools::{Refusal, ToolId};
 /// Query for the last messages of enterprises. A thread ends a week after its last message.
 pub const LAST_LETTERS: &str = include_str!("../../assets/readings/last_letters.sql");
 
-/// Days per billing month.
 const MONTH: f64 = 30.0;
 
 /// The plan that enterprises named in their latest message, by thread: with a price, or as a wish.
@@ -151,7 +150,6 @@ impl AskingThread {
     }
 }
 
-/// Tools that rules call.
 pub(super) const TOOLS: [ToolId; 2] = [ToolId::SendEnterpriseDeal, ToolId::RejectEnterpriseDeal];
 
 #[cfg(test)]

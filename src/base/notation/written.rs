@@ -133,7 +133,6 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads `key = value` or a value alone.
     fn argument(&mut self) -> Result<Argument, Problem> {
         let (column, start) = (self.column(), self.at);
         let word = self.word();

@@ -11,22 +11,18 @@ use novamind_base::notation::printable;
 use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::Ended;
 
-/// A figure with its label.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct CardFigure {
     /// Formatted value.
     value: String,
-    /// Label, with the day.
     name: String,
 }
 
-/// Content of the card.
 #[derive(Debug, Clone, PartialEq)]
 struct Card {
     headline: String,
     /// Rank among the published results, if comparable.
     rank: Option<String>,
-    /// Cash at the end of each day, dollars.
     cash_by_day: Vec<f64>,
     /// Days of the highest and the lowest cash.
     marks: Vec<u32>,
@@ -38,12 +34,10 @@ struct Card {
     source: String,
 }
 
-/// Returns the card as text of at most 80 columns.
 pub fn as_text(story: &Story) -> String {
     text::write(&Card::of(story))
 }
 
-/// Returns the card as an SVG of 1200 by 630.
 pub fn as_svg(story: &Story) -> String {
     svg::draw(&Card::of(story))
 }
@@ -105,7 +99,6 @@ fn voice(story: &Story) -> Option<&'static str> {
     })
 }
 
-/// Names the scenario, seed and program version.
 fn source(story: &Story) -> String {
     let seed = story.seen.seed.map_or(String::new(), |seed| format!(" · seed {seed}"));
     let changed = if story.seen.has_own_parameters { " · changed parameters" } else { "" };
@@ -131,7 +124,6 @@ mod tests {
         }
     }
 
-    /// Returns cash at the end of each day from the ledger.
     fn cash_of_ledger(session: &mut Session, last: u32) -> Vec<f64> {
         let until = |day| format!("SELECT total(amount) FROM ledger WHERE day <= {day}");
         (0..=last).map(|day| number(session, &until(day))).collect()

@@ -3,18 +3,14 @@
 use super::{Card, CardFigure};
 use crate::words::dollar_tick;
 
-/// Size of the curve.
 const COLUMNS: usize = 66;
 const ROWS: usize = 10;
-/// Width of the axis labels.
 const LABELS: usize = 10;
-/// Width of a figure.
 const FACT: usize = 26;
 
 /// Characters filled from below, by eighths.
 const EIGHTHS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
-/// Writes the card.
 pub fn write(card: &Card) -> String {
     let mut lines = vec![format!("NovaMind · {}", card.source), String::new(), card.headline.clone()];
     lines.extend(card.rank.clone());
@@ -27,7 +23,6 @@ pub fn write(card: &Card) -> String {
     lines.join("\n") + "\n"
 }
 
-/// Returns a line of figures and a line of labels.
 fn facts(facts: &[CardFigure]) -> [String; 2] {
     let row = |text: fn(&CardFigure) -> &String| {
         facts.iter().map(|fact| format!("{:<FACT$}", text(fact))).collect::<String>().trim_end().to_owned()

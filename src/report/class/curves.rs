@@ -39,7 +39,6 @@ pub struct Scatter<'a> {
     pub points: Vec<StudentPoints<'a>>,
 }
 
-/// Returns the counted run of each student in a part.
 fn runs_of<'a>(ranking: &[RankedStudent<'a>], part: u32) -> Vec<(&'a str, &'a ClassRun)> {
     let of_part = |student: &RankedStudent<'a>| {
         let run = student.runs.iter().find(|run| run.evidence.part == part).copied()?;

@@ -14,9 +14,7 @@ const RIGHT: f64 = 14.0;
 const TOP: f64 = 12.0;
 const BOTTOM: f64 = 44.0;
 
-/// Data of a drawing.
 pub(super) struct Drawing<'a> {
-    /// Text alternative.
     pub title: String,
     /// Label of the horizontal axis.
     pub across: String,

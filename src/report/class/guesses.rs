@@ -59,7 +59,6 @@ fn first_tries<'a>(view: &'a ClassView<'a>, part: u32) -> impl Iterator<Item = &
     firsts.into_iter()
 }
 
-/// Counts correct guesses among choices in a run.
 pub(super) fn right(view: &ClassView<'_>, run: &ClassRun) -> usize {
     let part = view.part_of(run);
     let steps = part.map(|part| part.steps.as_slice()).unwrap_or_default();

@@ -13,7 +13,6 @@ use crate::html::STYLE;
 use crate::words::{count, money};
 use novamind_base::notation::{escaped_html, percent};
 
-/// CSS in addition to the style of reports.
 const OWN_STYLE: &str = include_str!("../../../assets/class.css");
 
 /// Returns the page.
@@ -70,7 +69,6 @@ pub fn as_html(view: &ClassView<'_>) -> String {
     page + "</main>\n</body>\n</html>\n"
 }
 
-/// Returns the CSS that highlights the selected student.
 fn lighting(students: usize) -> String {
     let rule = |at: usize| {
         format!(
@@ -83,7 +81,6 @@ fn lighting(students: usize) -> String {
     (0..students).map(rule).collect()
 }
 
-/// Returns the CSS class and name for the marks of a student.
 fn marks<'a>(ranking: &'a [RankedStudent<'a>]) -> impl Fn(&str) -> Option<(String, String)> + 'a {
     |label| {
         let at = ranking.iter().position(|own| own.label == label)?;
@@ -175,7 +172,6 @@ fn pitfalls_met(view: &ClassView<'_>) -> String {
     )
 }
 
-/// Writes counts as bars, with some highlighted.
 fn bars(rows: impl Iterator<Item = (String, usize, bool)>, all: usize) -> String {
     let bar = |(name, count, own): (String, usize, bool)| {
         format!(

@@ -23,7 +23,6 @@ use novamind_course::{
     ranked_goal, share_of_good,
 };
 
-/// Default figure of the scatter plot.
 const CASH: &str = "cash";
 
 /// A class with its submissions and display options.
@@ -86,7 +85,6 @@ impl ClassView<'_> {
         Ok(())
     }
 
-    /// Returns the undamaged runs that belong to their students.
     fn whole(&self) -> impl Iterator<Item = &ClassRun> {
         self.collection
             .runs
@@ -114,7 +112,6 @@ impl ClassView<'_> {
         }
     }
 
-    /// Returns the part that a run plays.
     fn part_of(&self, run: &ClassRun) -> Option<&LessonPart> {
         self.lesson?.plan.parts.get((run.evidence.part as usize).checked_sub(1)?)
     }
@@ -128,7 +125,6 @@ impl ClassView<'_> {
         share_of_good(Some(bound), value(&run.evidence)?, value(self.good(run)?)?)
     }
 
-    /// Returns the reference play on the seed of a run.
     fn good(&self, run: &ClassRun) -> Option<&Evidence> {
         let of = &run.evidence;
         let all = self.collection.references.iter().map(|reference| &reference.evidence);

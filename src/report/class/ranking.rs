@@ -36,7 +36,6 @@ pub fn ranked<'a>(view: &'a ClassView<'a>) -> Vec<RankedStudent<'a>> {
     all
 }
 
-/// Returns the mean over the parts and the best try of each.
 fn score_in_lesson<'a>(view: &'a ClassView<'a>, label: &str) -> Option<(f64, Vec<&'a ClassRun>)> {
     let own: Vec<&ClassRun> =
         view.whole().filter(|run| run.label == label && run.verdict == RunVerdict::Finished).collect();
@@ -61,7 +60,6 @@ fn score_of_run<'a>(view: &'a ClassView<'a>, label: &str, day: u32) -> Option<(f
     Some((cash, vec![run]))
 }
 
-/// Returns the last day that every undamaged run has reached.
 fn common_day(view: &ClassView<'_>) -> u32 {
     view.whole().map(|run| run.evidence.day).min().unwrap_or(0)
 }

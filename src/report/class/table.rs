@@ -4,7 +4,6 @@ use super::ClassView;
 use crate::tables::column::{Column, columns};
 use novamind_course::{ClassRun, LessonStep, StepEvidence};
 
-/// A row: one run of the class.
 struct ClassRow<'a> {
     view: &'a ClassView<'a>,
     run: &'a ClassRun,
@@ -91,7 +90,6 @@ fn most_steps(view: &ClassView<'_>) -> usize {
     view.lesson.map_or(0, |lesson| lesson.plan.parts.iter().map(|part| part.steps.len()).max().unwrap_or(0))
 }
 
-/// Returns the step and goal numbers of all goals of any part, from 0.
 fn goals(view: &ClassView<'_>) -> Vec<(usize, usize)> {
     let parts = view.lesson.map(|lesson| lesson.plan.parts.as_slice()).unwrap_or_default();
     let most = |step: usize| {

@@ -194,7 +194,6 @@ impl RankedStudent<'_> {
     }
 }
 
-/// Draws the curves of a part and a decision against a figure.
 fn drawings(view: &ClassView<'_>, ranking: &[RankedStudent<'_>], part: u32, lit: Option<&str>) -> String {
     let all = curves(view, ranking, part);
     let title = view.part_title(part).map(|title| format!(", {title}")).unwrap_or_default();

@@ -53,7 +53,6 @@ pub struct Effort {
 }
 
 impl Effort {
-    /// Counts an activity other than a call or query.
     pub(super) fn count(&mut self, activity: &Activity) {
         match activity {
             Activity::View(_) => self.views += 1,
@@ -80,7 +79,6 @@ impl Effort {
         }
     }
 
-    /// Adds the counts of another week.
     pub(super) fn add(&mut self, other: &Effort) {
         self.time += other.time;
         self.breaks += other.breaks;

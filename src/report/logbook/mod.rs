@@ -275,7 +275,6 @@ fn time_after(lines: &[Line], afterwards: &[Line]) -> TimeSpent {
     attendance.between(end, attendance.place())
 }
 
-/// Returns the median; `None` without values.
 fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;

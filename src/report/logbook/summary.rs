@@ -197,14 +197,12 @@ fn decisions(book: &Logbook) -> Vec<Block> {
     if blocks.is_empty() { vec![Block::Text("No decisions.".to_owned())] } else { blocks }
 }
 
-/// Lists the screens with the longest viewing time.
 fn longest(screens: &BTreeMap<String, TimeSpent>, most: usize) -> String {
     let sorted = by_length(screens);
     let told = sorted.iter().take(most).map(|(name, seconds)| format!("{name} {}", time(*seconds)));
     told.collect::<Vec<_>>().join(", ")
 }
 
-/// Returns screens and their active seconds, longest first.
 fn by_length(screens: &BTreeMap<String, TimeSpent>) -> Vec<(&str, f64)> {
     let mut sorted: Vec<(&str, f64)> =
         screens.iter().map(|(name, spent)| (name.as_str(), spent.active_seconds())).collect();
@@ -223,7 +221,6 @@ fn time(seconds: f64) -> String {
     }
 }
 
-/// Formats a time to the minute, in UTC.
 fn minute(at: &str) -> String {
     at.get(..16).unwrap_or(at).replace('T', " ")
 }

@@ -24,7 +24,6 @@ pub struct Pause {
     pub seconds: f64,
 }
 
-/// A week and the actions before it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Span {
     pub decision_day: u32,
@@ -45,12 +44,10 @@ pub(super) struct Span {
     pub attended: AttendedWeek,
 }
 
-/// All spans of a run.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Timeline {
     /// One span for each line that closes days.
     pub spans: Vec<Span>,
-    /// Actions after the last of them.
     pub open: Span,
     pub breaks: Vec<Pause>,
     pub clock_set_back: u32,

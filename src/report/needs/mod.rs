@@ -106,7 +106,6 @@ pub struct Need {
     pub urgent: bool,
 }
 
-/// Data of a diagnosis.
 struct Situation<'a> {
     seen: Observation,
     settings: CoreSettings,
@@ -126,7 +125,6 @@ struct Situation<'a> {
 const AHEAD: f64 = 28.0;
 /// Share of the turnover below which nothing is reported.
 const SMALL: f64 = 0.01;
-/// Days per billing month.
 const MONTH: f64 = 30.0;
 
 impl<'a> Situation<'a> {
@@ -218,7 +216,6 @@ pub fn needs(session: &Session) -> Vec<Need> {
 }
 
 impl Need {
-    /// Removes the proposal.
     fn keep_to_facts(&mut self) {
         self.proposal = None;
         if let Place::Call(_, arguments) = &mut self.place {

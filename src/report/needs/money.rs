@@ -46,7 +46,6 @@ pub(super) fn runway(situation: &Situation<'_>) -> Option<Need> {
     })
 }
 
-/// A budget among the settings.
 struct Budget {
     name: &'static str,
     /// Dollars a day.
@@ -57,7 +56,6 @@ struct Budget {
     place: Place,
 }
 
-/// Returns the largest budget.
 fn largest_budget(situation: &Situation<'_>) -> Budget {
     let settings = situation.session.settings();
     let (core, development) = (&settings.core, &settings.targeted_development);
@@ -110,7 +108,6 @@ fn largest_budget(situation: &Situation<'_>) -> Budget {
     Budget { name, dollars, kept, place }
 }
 
-/// Sums the numbers in arguments.
 fn sum(arguments: &Value) -> f64 {
     match arguments {
         Value::Object(fields) => fields.values().map(sum).sum(),

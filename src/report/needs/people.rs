@@ -12,7 +12,6 @@ use novamind_tools::ToolId;
 
 /// Minimum number of weekly cancellations for a wave.
 const FEW: f64 = 20.0;
-/// Weeks of a billing cycle.
 const CYCLE: usize = 4;
 /// Minimum ratio of a wave to the usual churn.
 const WAVE: f64 = 2.0;

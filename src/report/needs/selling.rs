@@ -10,9 +10,7 @@ use novamind_session::identifiers::{Channel, Group, Plan};
 use novamind_session::{DeliveredQuality, Estimates, GroupWeek};
 use novamind_tools::ToolId;
 
-/// Minimum number of weekly leads for a low conversion to matter.
 const ENOUGH_LEADS: u32 = 20;
-/// Conversion below which it is low.
 const FEW: f64 = 0.1;
 /// Share of the estimated usage that a quota must cover.
 const COVERED: f64 = 0.8;
@@ -144,7 +142,6 @@ fn within_reach(situation: &Situation<'_>, group: Group) -> f64 {
     delivered.zip(now).map_or(0.0, |(delivered, now)| delivered / now.multiplier * best)
 }
 
-/// Reason why leads of a group do not sign up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Missing {
     Price,
@@ -189,7 +186,6 @@ fn no_sale(situation: &Situation<'_>, own: &Estimates, week: &GroupWeek) -> Opti
     })
 }
 
-/// The plans offered to a group, with its estimates.
 pub(super) struct Offers<'a> {
     situation: &'a Situation<'a>,
     own: &'a Estimates,
@@ -202,7 +198,6 @@ impl<'a> Offers<'a> {
         Some(Offers { situation, own, quality: situation.quality(own.group)? })
     }
 
-    /// Returns the plans with a price.
     fn plans(&self) -> impl Iterator<Item = Plan> + '_ {
         Plan::ALL.into_iter().filter(|plan| self.price(*plan) > 0.0)
     }
@@ -270,7 +265,6 @@ impl<'a> Offers<'a> {
         }
     }
 
-    /// Returns whether a price, quota or model tier changed today.
     fn changed_today(&self) -> bool {
         let of_offers = [ToolId::SetPrices, ToolId::SetUsageQuotas, ToolId::SetModelTiers];
         self.situation.seen.changes.iter().any(|change| of_offers.contains(&change.setting.tool()))

@@ -23,7 +23,6 @@ fn sound() -> Vec<(&'static str, Value)> {
     ]
 }
 
-/// Returns the healthy settings with some calls replaced.
 fn but(changed: &[(&'static str, Value)]) -> Vec<(&'static str, Value)> {
     let mut calls = sound();
     for (tool, arguments) in changed {

@@ -6,7 +6,6 @@ use crate::turn::{COSTS, INCOME};
 use crate::words::{count, money, whole};
 use novamind_session::ScoredForecast;
 
-/// Number of groups that a chart can distinguish.
 const MOST_GROUPS: usize = 6;
 
 /// Charts cash by day, with the last forecasts until they are due.
@@ -61,7 +60,6 @@ fn open_fan(story: &Story) -> Option<(Band, Curve)> {
     })
 }
 
-/// Returns the kinds of income and costs, with a value for every week.
 fn by_kind(story: &Story) -> Vec<Part> {
     let weeks: Vec<u32> = story.books.ledger.keys().copied().filter(|week| *week > 0).collect();
     let of = |week: u32, held: &[&str]| -> f64 {
@@ -76,7 +74,6 @@ fn by_kind(story: &Story) -> Vec<Part> {
     parts.filter(|part| part.values.iter().any(|value| *value != 0.0)).collect()
 }
 
-/// Charts income and costs by week as stacked bars.
 pub fn income_and_costs(story: &Story) -> Option<Block> {
     let at: Vec<f64> =
         story.books.ledger.keys().filter(|week| **week > 0).map(|week| f64::from(*week)).collect();
@@ -103,7 +100,6 @@ pub fn income_and_costs(story: &Story) -> Option<Block> {
     }))
 }
 
-/// Charts subscribers and seats by week.
 pub fn people(story: &Story) -> Option<Block> {
     if story.weeks.len() < 2 {
         return None;
@@ -177,7 +173,6 @@ pub fn groups(story: &Story) -> Option<Block> {
     }))
 }
 
-/// Charts forecasts of each horizon and their outcomes.
 pub fn forecasts(story: &Story) -> Vec<Block> {
     let horizons = story.measures.forecasts.iter().map(|score| score.horizon_days);
     horizons.filter_map(|horizon| forecast_chart(story, horizon)).collect()

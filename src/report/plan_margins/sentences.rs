@@ -64,7 +64,6 @@ fn of_plan(
     lines
 }
 
-/// Lists the margins of a plan's groups; `None` if only one group has the plan.
 fn by_group(sales: &Sales, plan: Plan, unit_cost: Option<f64>) -> Option<String> {
     let groups = sales.by_group(plan);
     let told = |(group, own): &(_, PlanUse)| {

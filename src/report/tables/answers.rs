@@ -6,14 +6,12 @@ use novamind_record::trajectory::Record;
 use novamind_record::trajectory::record::{Activity, Answered, Asked};
 use serde_json::Value;
 
-/// A question and its answer, with the answer's place.
 pub(super) struct ShownQuestion<'a> {
     asked: &'a Asked,
     answer: Option<(&'a Placed<'a>, &'a Answered)>,
 }
 
 impl ShownQuestion<'_> {
-    /// Returns a part of the answer, if there is one.
     fn answered<T>(&self, part: impl Fn(&Answered) -> T) -> Option<T> {
         self.answer.map(|(_, answer)| part(answer))
     }

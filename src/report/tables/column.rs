@@ -15,11 +15,9 @@ pub struct Heading {
     pub meaning: &'static str,
 }
 
-/// A column of a table whose rows are `Row`s.
 pub(crate) struct Column<Row> {
     /// Name, unit and meaning.
     pub heading: Heading,
-    /// Returns the cell of a row.
     pub cell: Box<dyn Fn(&Row) -> String>,
 }
 

@@ -10,7 +10,6 @@ use novamind_record::trajectory::record::{
     Activity, Call, DialogStep, Draft, Outcome, Presence, Reversal, Start, VoiceAnswer,
 };
 
-/// Returns the columns.
 pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, Event>>> {
     with_place(columns! { row: LineRow<'a, Event>;
         "afterwards", "0 or 1", "1: the line is in afterwards.jsonl" => row.placed.is_afterwards;
@@ -32,12 +31,10 @@ pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, Event>>> {
     })
 }
 
-/// Returns the rows of a run.
 pub(super) fn rows<'a>(lines: &'a [Placed<'a>]) -> impl Iterator<Item = LineRow<'a, Event>> {
     lines.iter().map(|placed| LineRow { placed, own: Event::of(&placed.line.record) })
 }
 
-/// Cells of a line.
 #[derive(Default)]
 pub(super) struct Event {
     what: String,

@@ -4,7 +4,6 @@ use super::column::{Column, columns};
 use crate::logbook::{Logbook, WeekLog};
 use novamind_session::ScoredForecast;
 
-/// A forecast with its run and week.
 pub(super) struct FiledForecast<'a> {
     book: &'a Logbook,
     week: &'a WeekLog,
@@ -12,7 +11,6 @@ pub(super) struct FiledForecast<'a> {
     naive: bool,
 }
 
-/// Returns the columns.
 pub(super) fn columns<'a>() -> Vec<Column<FiledForecast<'a>>> {
     columns! { row: FiledForecast<'a>;
         "run", "name", "name of the run" => row.book.run;
@@ -37,7 +35,6 @@ pub(super) fn columns<'a>() -> Vec<Column<FiledForecast<'a>>> {
     }
 }
 
-/// Returns the rows of a run.
 pub(super) fn rows(book: &Logbook) -> impl Iterator<Item = FiledForecast<'_>> {
     book.weeks.iter().flat_map(move |week| {
         let filed = week.forecasts.iter().zip(&week.naive_forecasts);

@@ -141,7 +141,6 @@ fn number(value: f64) -> String {
     format!("{}", value + 0.0)
 }
 
-/// Rounds to three decimals, for seconds and means.
 fn rounded(value: f64) -> f64 {
     (value * 1000.0).round() / 1000.0
 }
@@ -158,7 +157,6 @@ fn word(value: &impl Serialize) -> String {
     }
 }
 
-/// Returns the score of a horizon, if a forecast for it is due.
 fn score(scores: &[ForecastScore], horizon_days: u32) -> Option<&ForecastScore> {
     scores.iter().find(|score| score.horizon_days == horizon_days && score.scored > 0)
 }
@@ -169,12 +167,10 @@ fn pairs<N: AsRef<str>>(all: impl IntoIterator<Item = (N, f64)>) -> String {
     all.into_iter().map(one).collect::<Vec<_>>().join(";")
 }
 
-/// Joins accepted calls by tool in one cell.
 fn tools(effort: &super::logbook::Effort) -> String {
     pairs(effort.tools.iter().map(|(tool, count)| (tool, f64::from(*count))))
 }
 
-/// Joins active seconds by screen in one cell.
 fn screens(effort: &super::logbook::Effort) -> String {
     pairs(effort.screens.iter().map(|(screen, time)| (screen, time.active_seconds())))
 }
@@ -196,7 +192,6 @@ mod tests {
         }
     }
 
-    /// Maps rows by column name.
     fn named(rows: &[Vec<String>]) -> Vec<BTreeMap<&str, &str>> {
         let mut named = Vec::new();
         for row in &rows[1..] {

@@ -5,7 +5,6 @@ use super::place::{LineRow, Placed, with_place};
 use crate::measures::Wording;
 use novamind_record::trajectory::Record;
 
-/// A saved version of the notes.
 pub(super) struct KeptNotes<'a> {
     version: usize,
     digest: &'a str,
@@ -14,7 +13,6 @@ pub(super) struct KeptNotes<'a> {
     wording: Option<Wording>,
 }
 
-/// Returns the columns.
 pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, KeptNotes<'a>>>> {
     with_place(columns! { row: LineRow<'a, KeptNotes<'a>>;
         "version", "number", "number of the version, from 1" => row.own.version;
@@ -30,7 +28,6 @@ pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, KeptNotes<'a>>>> {
     })
 }
 
-/// Returns the rows of a run.
 pub(super) fn rows<'a>(lines: &'a [Placed<'a>]) -> impl Iterator<Item = LineRow<'a, KeptNotes<'a>>> {
     let kept = lines.iter().filter_map(|placed| match &placed.line.record {
         Record::Memo(memo) => Some((placed, &memo.digest, memo.length, None)),

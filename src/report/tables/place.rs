@@ -6,14 +6,12 @@ use crate::logbook::Logbook;
 use novamind_record::trajectory::Line;
 use novamind_session::week_of;
 
-/// A line with its place.
 pub(super) struct Placed<'a> {
     pub line: &'a Line,
     run: &'a str,
     participant: &'a str,
     /// The line was written after the end of the run.
     pub is_afterwards: bool,
-    /// Seconds since the first line.
     seconds: f64,
 }
 
@@ -37,7 +35,6 @@ pub(super) fn with_place<'a, T>(own: Vec<Column<LineRow<'a, T>>>) -> Vec<Column<
     place.into_iter().chain(own).collect()
 }
 
-/// Returns all lines of a run with their places.
 pub(super) fn placed<'a>(book: &'a Logbook, lines: &'a [Line], afterwards: &'a [Line]) -> Vec<Placed<'a>> {
     let began = lines.first().map_or(0, Line::nanoseconds);
     let place = |line: &'a Line, is_afterwards: bool| Placed {

@@ -6,7 +6,6 @@ use super::word;
 use novamind_record::trajectory::Record;
 use novamind_record::trajectory::record::Query;
 
-/// Returns the columns.
 pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, &'a Query>>> {
     with_place(columns! { row: LineRow<'a, &'a Query>;
         "via", "word", "typed, library, drill_down, derived or script; empty in format 1" => row.own.via.map(|via| word(&via));
@@ -20,7 +19,6 @@ pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, &'a Query>>> {
     })
 }
 
-/// Returns the rows of a run.
 pub(super) fn rows<'a>(lines: &'a [Placed<'a>]) -> impl Iterator<Item = LineRow<'a, &'a Query>> {
     lines.iter().filter_map(|placed| match &placed.line.record {
         Record::Query(own) => Some(LineRow { placed, own }),

@@ -34,7 +34,6 @@ const FIRST_ERROR: &str =
 const ERROR: &str = "mean over them of |point - outcome| / max(|outcome|, 1)";
 const COVERAGE: &str = "share of them whose interval contains the outcome";
 
-/// Returns the columns in order.
 pub(super) fn columns() -> Vec<Column<Logbook>> {
     columns! { run: Logbook;
         "run", "name", "name of the run" => run.run;

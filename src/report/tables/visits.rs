@@ -4,7 +4,6 @@ use super::column::{Column, columns};
 use super::word;
 use novamind_study::FoundVisit;
 
-/// Returns the columns.
 pub(super) fn columns() -> Vec<Column<FoundVisit>> {
     columns! { visit: FoundVisit;
         "participant", "label", "label as typed; empty if a code was rejected" => visit.line.label;

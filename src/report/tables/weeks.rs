@@ -5,14 +5,12 @@ use super::{in_console, screens, seen, tools};
 use crate::logbook::{Logbook, WeekLog};
 use novamind_session::ScoredForecast;
 
-/// A week of a run.
 pub(super) struct WeekRow<'a> {
     pub run: &'a Logbook,
     pub week: &'a WeekLog,
 }
 
 impl WeekRow<'_> {
-    /// Returns the forecast with a horizon.
     fn forecast(&self, horizon_days: u32) -> Option<&ScoredForecast> {
         self.week.forecasts.iter().find(|scored| scored.forecast.horizon_days == horizon_days)
     }
@@ -45,7 +43,6 @@ const FIGURES: [(&str, &str, &str); 19] = [
     ("recurring_revenue", "dollars a month", "monthly recurring revenue at the end"),
 ];
 
-/// Returns the columns in order.
 pub(super) fn columns<'a>() -> Vec<Column<WeekRow<'a>>> {
     let mut columns = columns! { row: WeekRow<'a>;
         "run", "name", "name of the run" => row.run.run;

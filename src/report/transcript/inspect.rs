@@ -74,7 +74,6 @@ pub fn inspect(run: &Transcript, told: &Surroundings) -> Value {
     })
 }
 
-/// Returns the status of the run in Inspect's terms.
 fn status(run: &Transcript) -> &'static str {
     match run.end.as_ref().map(|end| end.reason) {
         None => "started",
@@ -93,7 +92,6 @@ fn score(run: &Transcript) -> Option<Value> {
     Some(json!({ "value": end.score?, "explanation": explanation }))
 }
 
-/// Returns the score of the only sample as the result of the evaluation.
 fn result(score: &Value) -> Value {
     json!({
         "name": SCORER,
@@ -104,12 +102,9 @@ fn result(score: &Value) -> Value {
     })
 }
 
-/// Messages of a step.
 struct Step {
     at: Option<String>,
-    /// Text or call of the step.
     message: Value,
-    /// Result of the call.
     answer: Option<Value>,
 }
 

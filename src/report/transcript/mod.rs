@@ -209,7 +209,6 @@ impl Transcript {
         }
     }
 
-    /// Returns the name of the player as an agent.
     fn player(&self) -> String {
         self.manifest.participant.clone().unwrap_or_else(|| "unnamed player".to_owned())
     }
@@ -237,7 +236,6 @@ impl Transcript {
     }
 }
 
-/// Returns the forecasts of a week in the format of `next_week`.
 fn predictions(forecasts: &[FiledForecast]) -> Value {
     let one = |(key, filed): (&&str, &FiledForecast)| {
         let said = json!({ "point": filed.point, "lower": filed.lower, "upper": filed.upper });

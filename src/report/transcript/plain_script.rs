@@ -41,7 +41,6 @@ pub(super) fn refused_in_words(tool: &CalledTool, args: &Value, code: &str) -> S
     format!("# rejected ({code}): {name} {args}")
 }
 
-/// Returns the options for creating the run.
 pub(super) fn new_run(run: &Transcript) -> String {
     let own = &run.manifest;
     let mut options = format!(
@@ -61,7 +60,6 @@ pub(super) fn new_run(run: &Transcript) -> String {
     options
 }
 
-/// Collects parameters with their full keys.
 fn collect_parameters(above: &str, table: &toml::Table, all: &mut Vec<(String, String)>) {
     for (key, value) in table {
         let key = if above.is_empty() { key.clone() } else { format!("{above}.{key}") };

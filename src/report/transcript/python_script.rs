@@ -51,7 +51,6 @@ pub fn python_script(run: &Transcript) -> Result<String, RunError> {
     Ok(text)
 }
 
-/// Writes a value as a Python literal.
 fn python(value: &Value) -> String {
     let in_order = |parts: Vec<String>| parts.join(", ");
     match value {

@@ -33,7 +33,6 @@ pub(super) fn reversal(reversal: Option<Reversal>) -> Option<(String, Value)> {
     })
 }
 
-/// Returns a line that changed nothing, as metadata.
 pub(super) fn aside(line: &Line) -> Value {
     let mut fields = Map::from_iter([
         ("seq".to_owned(), line.seq.into()),

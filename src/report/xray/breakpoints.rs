@@ -7,9 +7,7 @@ use novamind_insight::{
     Breakpoint, Condition, Direction, Hit, Judged, LookBack, Relation, RunUntil, TrueBefore,
 };
 
-/// Minimum number of decimals of a figure.
 const DECIMALS: usize = 4;
-/// Maximum number of decimals, used to distinguish close numbers.
 const MOST_DECIMALS: usize = 12;
 
 /// Lists the breakpoints, one per line.

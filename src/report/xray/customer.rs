@@ -107,7 +107,6 @@ fn term_in_words(term: Term, lens: &CustomerLens) -> String {
     }
 }
 
-/// Returns a row for each plan.
 fn plans(weighed: &Weighed, own: Plan) -> Vec<String> {
     let head = [
         "plan",
@@ -192,7 +191,6 @@ fn satisfaction(lens: &CustomerLens) -> String {
     format!("{SATISFACTION} {}", listed.join(", "))
 }
 
-/// Lists events by day.
 fn events(lens: &CustomerLens) -> Vec<String> {
     let first = &lens.first;
     let mut lines = vec![format!("day {}: signed up for plan {}", first.day, first.plan)];

@@ -6,14 +6,12 @@ use super::table;
 use novamind_base::notation::grouped;
 use novamind_insight::{CustomerDifference, Difference, RunDifference};
 
-/// Number of figures that are listed; a state has several hundred.
 const FIGURES_TOLD: usize = 40;
 /// Minimum number of decimals of a figure, and of one of at least a thousand.
 const DECIMALS: usize = 4;
 const DECIMALS_OF_LARGE: usize = 2;
 /// Maximum number of decimals, used to distinguish close numbers.
 const MOST_DECIMALS: usize = 12;
-/// Number of parameters that are listed.
 const PARAMETERS_TOLD: usize = 20;
 
 /// Describes the differences between two days of a run.
@@ -79,7 +77,6 @@ pub fn difference_as_data(found: &Difference) -> Value {
     })
 }
 
-/// Lists parameters that differ.
 fn parameters(found: &Difference, names: (&str, &str)) -> Vec<String> {
     let row =
         |(key, own, other): &(String, Value, Value)| vec![key.clone(), own.to_string(), other.to_string()];

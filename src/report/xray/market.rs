@@ -3,7 +3,6 @@
 use super::{settled, table};
 use novamind_insight::{DriftState, GroupDrifted, NextRivalMove, RivalState};
 
-/// Number of moves that are listed.
 const LISTED_MOVES: usize = 10;
 
 /// Describes what competitors could copy, their moves so far, and the next move.

@@ -43,7 +43,6 @@ fn evenings_in_words(values: impl Iterator<Item = f64> + Clone) -> Option<String
     (days > 0).then(|| format!("{EVENINGS} {}: {least:.4} to {most:.4}", count(days as u32, "day")))
 }
 
-/// Formats an indented table.
 fn table(head: &[&str], rows: &[Vec<String>]) -> Vec<String> {
     let rows: Vec<Vec<String>> =
         rows.iter().map(|row| row.iter().map(|cell| settle(cell)).collect()).collect();

@@ -3,9 +3,7 @@
 use super::{settled, table};
 use novamind_insight::{Follows, KeyedDraws, NextDraws};
 
-/// Number of draws per row.
 const SHOWN_DRAWS: usize = 8;
-/// Number of customers that are named.
 const NAMED_CUSTOMERS: usize = 12;
 
 /// Lists the streams of the next day, their first draws, and the results.
@@ -23,7 +21,6 @@ pub fn streams_in_words(own: &NextDraws) -> Vec<String> {
     settled(lines)
 }
 
-/// Returns a row for each stream.
 fn side_by_side(streams: &[KeyedDraws]) -> Vec<String> {
     let count = streams.iter().map(|own| own.draws.len()).max().unwrap_or(0);
     let numbers: Vec<String> = (1..=count).map(|number| format!("draw {number}")).collect();
@@ -46,7 +43,6 @@ fn key(own: &KeyedDraws) -> String {
     parts.collect::<Vec<String>>().join(", ")
 }
 
-/// Lists all draws of a stream in several lines.
 fn in_full(own: &KeyedDraws) -> Vec<String> {
     let mut lines = vec![format!("  {} ({}): {}", own.stream, key(own), in_words(&own.follows))];
     lines.extend(own.draws.chunks(SHOWN_DRAWS).map(|some| {

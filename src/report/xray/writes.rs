@@ -44,7 +44,6 @@ pub fn written_by(write: &Write) -> String {
     }
 }
 
-/// Names the reason of a cancellation.
 fn why_left(cause: EndCause) -> &'static str {
     match cause {
         EndCause::Involuntary => "payment failed",

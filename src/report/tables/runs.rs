@@ -38,7 +38,7 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
     columns! { run: Logbook;
         "run", "name", "name of the run" => run.run;
         "participant", "label", "label of the participant, assigned by the experimenter" => run.participant;
-        "study", "name", "study of the run; this and the following columns are empty without a study"
+        "study", "name", "study of the run; this and the next five columns are empty without a study"
             => run.study.as_ref().map(|study| &study.name);
         "study_digest", "hash", "BLAKE3 hash of the study's protocol" => run.study.as_ref().map(|study| &study.digest);
         "condition", "text", "condition assigned to the participant"
@@ -160,7 +160,7 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
             => run.wording.planning_per_hundred().map(rounded);
         "if_words", "count", "occurrences of \"if\" in rationales" => run.wording.ifs;
         "note_versions", "count", "number of saved versions of the notes before the end" => run.notes.versions;
-        "note_words", "count", "words of the last saved notes; this and the following columns are empty if lines do not contain \
+        "note_words", "count", "words of the last saved notes; this and the next two columns are empty if lines do not contain \
          their text" => run.notes.wording.map(|own| own.words);
         "note_planning_words", "count", "planning words among them" => run.notes.wording.map(|own| own.planning);
         "note_if_words", "count", "occurrences of \"if\"" => run.notes.wording.map(|own| own.ifs);

@@ -517,7 +517,7 @@ run 3 until subscribers(S1) < 0   # never
         "breakpoint 1: subscribers(S1) >= 20; run DAYS stops there",
         "\nstopped on day ",
         " >= 20 (day before ",
-        "mood of ",
+        "satisfaction of ",
         "last false on day ",
     ] {
         assert!(text.contains(part), "{part} is missing in\n{text}");

@@ -38,7 +38,7 @@ pub(super) fn judge_in_words(run: &Transcript) -> Option<&'static str> {
 /// characters.
 pub(super) fn refused_in_words(tool: &CalledTool, args: &Value, code: &str) -> String {
     let name = tool.known().map_or_else(|| json!(tool.name()).to_string(), |tool| tool.name().to_owned());
-    format!("# rejected ({code}): {name} {args}")
+    format!("# refused ({code}): {name} {args}")
 }
 
 pub(super) fn new_run(run: &Transcript) -> String {

@@ -223,7 +223,7 @@ mod tests {
         for (word, caption) in [
             ("fit", "estimates of day 0"),
             ("cohort", "Share of a cohort that remains"),
-            ("spill-over", "a change of reputation of 0.1"),
+            ("spill-over", "a reputation change of 0.1"),
             ("quality bank", "base quality"),
             ("network leads", "Leads of all groups by week"),
         ] {

@@ -141,7 +141,7 @@ fn two_hundred_threads_are_worked_with_rules_in_under_forty_keys() {
     let (effects, mut keys) = press(&mut screen, &company, "/ 'reten' enter a t e '103' ctrl-s");
     let sent = deals(&effects);
     assert_eq!((sent.len(), &sent[0][1]), (66, &json!([["B", 20.6]])));
-    assert!(matches!(&effects[0], Effect::ConfirmCall { text, .. } if text.starts_with("66 enterprises, ")));
+    assert!(matches!(&effects[0], Effect::ConfirmCall { text, .. } if text.starts_with("66 companies, ")));
     answered(&mut screen, &mut company, &sent);
     keys += 1;
     assert_eq!(screen.marked.len(), 0);

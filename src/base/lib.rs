@@ -1,5 +1,5 @@
-//! What every layer uses and what knows nothing of companies: notation of numbers, statistics of small samples, and the
-//! search for a known name that resembles an unknown one.
+//! Helpers for all crates, independent of the simulation: notation of numbers, statistics of small samples, and
+//! search for similar names.
 
 mod nearest;
 pub mod notation;

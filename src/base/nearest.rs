@@ -1,10 +1,10 @@
-//! Which name was meant: the known ones that look most like one that does not exist.
+//! Suggestions of similar names.
 
-/// Up to three of the known names that look most like a name that does not exist, best first.
+/// Returns up to three of the known names that are most similar to `name`, best first.
 pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let name = name.to_lowercase();
     let length = name.chars().count();
-    // A name that is so much longer or shorter is too far away: it is not measured, which takes long for a long one.
+    // Skips names of very different length, because comparing long names is slow.
     let may_be_near =
         |candidate: &&str| length.abs_diff(candidate.chars().count()) <= candidate.len().max(name.len()) / 2;
     let mut scored: Vec<(usize, &str)> = known

@@ -1,4 +1,4 @@
-//! How numbers are written, and arguments of a line: the same on every screen, in every report and every message.
+//! Formats of numbers and arguments, shared by all screens, reports and messages.
 //!
 //! Rounding is half to even on the exact binary value everywhere.
 
@@ -8,11 +8,11 @@ use std::borrow::Cow;
 
 use serde_json::{Number, Value, json};
 
-/// Largest number that is written in full: no tool takes a larger amount. What is above it is written in powers of ten.
+/// Largest number written in full, because no tool accepts a larger amount. Larger ones use powers of ten.
 const LARGEST_IN_FULL: f64 = 1e15;
 
-/// A number with thousands separators and fixed decimals, for instance `1,234,567.5`; above 1e15 in powers of ten, `1.5e15`.
-/// Zero has no sign.
+/// Formats a number with thousands separators and fixed decimals, for example `1,234,567.5`; above 1e15 in powers of
+/// ten, `1.5e15`. Zero has no sign.
 pub fn grouped(value: f64, decimals: usize) -> String {
     if value.abs() > LARGEST_IN_FULL && value.is_finite() {
         return in_powers(value);
@@ -22,12 +22,12 @@ pub fn grouped(value: f64, decimals: usize) -> String {
     separated(if is_zero { text.trim_start_matches('-') } else { &text })
 }
 
-/// Rounds to decimals, half to even on the exact binary value.
+/// Rounds to `decimals`, half to even on the exact binary value.
 pub fn round_to(value: f64, decimals: u32) -> f64 {
-    format!("{value:.*}", decimals as usize).parse().expect("a formatted number reads back")
+    format!("{value:.*}", decimals as usize).parse().expect("a formatted number parses")
 }
 
-/// Written digits with separators between thousands.
+/// Adds thousands separators to formatted digits.
 fn separated(text: &str) -> String {
     let (sign, digits) = text.strip_prefix('-').map_or(("", text), |digits| ("-", digits));
     let (whole, fraction) =
@@ -45,7 +45,7 @@ fn separated(text: &str) -> String {
     }
 }
 
-/// At most four digits, and the power of ten: `1.234e15`.
+/// Formats at most four digits and the power of ten: `1.234e15`.
 fn in_powers(value: f64) -> String {
     let text = format!("{value:.3e}");
     match text.split_once('e') {
@@ -56,7 +56,7 @@ fn in_powers(value: f64) -> String {
     }
 }
 
-/// A count with its noun: `1 week`, `3 weeks`.
+/// Formats a count with its noun: `1 week`, `3 weeks`.
 pub fn count(number: u32, noun: &str) -> String {
     let plural = match noun.strip_suffix("ny") {
         _ if number == 1 => noun.to_owned(),
@@ -66,17 +66,17 @@ pub fn count(number: u32, noun: &str) -> String {
     format!("{} {plural}", grouped(f64::from(number), 0))
 }
 
-/// Money without cents: `$1,234,568`, `-$1,234`.
+/// Formats dollars without cents: `$1,234,568`, `-$1,234`.
 pub fn dollars(value: f64) -> String {
     signed(value, 0)
 }
 
-/// Money with cents: `$1,234.50`, `-$0.50`.
+/// Formats dollars with cents: `$1,234.50`, `-$0.50`.
 pub fn cents(value: f64) -> String {
     signed(value, 2)
 }
 
-/// A price with the decimals it has: `$12`, `$22.50`, `$0.125`.
+/// Formats a price with all its decimals: `$12`, `$22.50`, `$0.125`.
 pub fn price(value: f64) -> String {
     let has_only_cents = (value * 100.0).round() / 100.0 == value;
     match value.fract() == 0.0 {
@@ -86,12 +86,12 @@ pub fn price(value: f64) -> String {
     }
 }
 
-/// A price to the cent: `$12`, `$22.50`.
+/// Formats a price to the cent: `$12`, `$22.50`.
 pub fn price_to_cents(value: f64) -> String {
     if value.fract() == 0.0 { dollars(value) } else { cents(value) }
 }
 
-/// Money with its sign before the dollar; what rounds to nothing has none.
+/// Formats dollars with the sign before the dollar sign; amounts that round to zero have no sign.
 fn signed(value: f64, decimals: usize) -> String {
     let text = grouped(value.abs(), decimals);
     let nothing = text.chars().all(|letter| matches!(letter, '0' | '.'));
@@ -99,24 +99,25 @@ fn signed(value: f64, decimals: usize) -> String {
     format!("{sign}${text}")
 }
 
-/// Money as the weekly dashboard of the released simulator writes it: negative `$-1,234`, all digits, a sign before any zero.
+/// Formats dollars like the weekly dashboard of the released simulator: negative `$-1,234`, all digits, negative
+/// zeros with a sign.
 pub fn released_dollars(value: f64) -> String {
     format!("${}", separated(&format!("{value:.0}")))
 }
 
-/// Money with its sign in front, for changes: `+$45,210`, `-$45,210`.
+/// Formats a change in dollars with its sign: `+$45,210`, `-$45,210`.
 pub fn signed_dollars(value: f64) -> String {
     let sign = if value < 0.0 { '-' } else { '+' };
     format!("{sign}${}", grouped(value.abs(), 0))
 }
 
-/// A share as a percentage: `0.1234` with one decimal is `12.3%`.
+/// Formats a share as a percentage: `0.1234` with one decimal is `12.3%`.
 pub fn percent(share: f64, decimals: usize) -> String {
-    // Nobody reads separators in a share.
+    // Percentages have no separators.
     format!("{}%", grouped(share * 100.0, decimals).replace(',', ""))
 }
 
-/// A large number in three significant digits with a suffix: `1.23M`, `45.6k`, `789`.
+/// Formats a number in three significant digits with a suffix: `1.23M`, `45.6k`, `789`.
 pub fn compact(value: f64) -> String {
     // Zero has no sign.
     let value = value + 0.0;
@@ -139,13 +140,13 @@ pub fn compact(value: f64) -> String {
     format!("{scaled:.decimals$}{suffix}")
 }
 
-/// Dollars in at most seven characters: `$1.23M`, `-$45.2k`, `$87`.
+/// Formats dollars in at most seven characters: `$1.23M`, `-$45.2k`, `$87`.
 pub fn short_dollars(value: f64) -> String {
     let sign = if value < 0.0 { "-" } else { "" };
     format!("{sign}${}", compact(value.abs()))
 }
 
-/// Reads a number as people type it: `1,200`, `$3.5k`, `2M`, `1_000`.
+/// Parses a number as users type it: `1,200`, `$3.5k`, `2M`, `1_000`.
 pub fn parse_number(text: &str) -> Option<f64> {
     let cleaned: String =
         text.trim().chars().filter(|letter| !matches!(letter, ',' | '_' | '$' | ' ')).collect();
@@ -164,7 +165,7 @@ pub fn parse_number(text: &str) -> Option<f64> {
     digits.parse::<f64>().ok().map(|number| number * factor).filter(|number| number.is_finite())
 }
 
-/// A number as JSON: whole numbers without a decimal point, others in their shortest exact form.
+/// Returns a number as JSON: whole numbers without a decimal point, others in their shortest exact form.
 pub fn json_number(value: f64) -> Value {
     const EXACT: f64 = 9_007_199_254_740_992.0;
     if value.fract() == 0.0 && value.abs() < EXACT {
@@ -174,7 +175,7 @@ pub fn json_number(value: f64) -> Value {
     }
 }
 
-/// A number with a decimal point or an exponent, as the cells of JSON tables show it: `4.0`, `0.25`, `1e+16`.
+/// Formats a number with a decimal point or an exponent, like cells of JSON tables: `4.0`, `0.25`, `1e+16`.
 pub fn point_number(value: f64) -> String {
     let text = format!("{value:?}");
     match text.split_once('e') {
@@ -186,7 +187,7 @@ pub fn point_number(value: f64) -> String {
     }
 }
 
-/// JSON in one line with a blank after every colon and comma, and numbers as [`point_number`] writes them.
+/// Formats JSON in one line with a blank after every colon and comma, and numbers as in [`point_number`].
 pub fn spaced_json(value: &Value) -> String {
     let list = |parts: Vec<String>| parts.join(", ");
     match value {
@@ -200,7 +201,7 @@ pub fn spaced_json(value: &Value) -> String {
     }
 }
 
-/// Rewrites all numbers of a JSON value as [`json_number`] does.
+/// Rewrites all numbers of a JSON value as in [`json_number`].
 pub fn plain_numbers(value: Value) -> Value {
     match value {
         Value::Number(number) if number.is_f64() => number.as_f64().map_or(Value::Null, json_number),
@@ -210,8 +211,8 @@ pub fn plain_numbers(value: Value) -> Value {
     }
 }
 
-/// Whether a letter, shown as it stands, would move the cursor, colour what follows or turn the direction of writing
-/// round. Line ends and tabs do not.
+/// Returns whether a character, printed as is, would move the cursor, change colors or reverse the direction of
+/// writing. Line ends and tabs do not count.
 pub fn acts(letter: char) -> bool {
     (letter.is_control() && !['\n', '\t'].contains(&letter))
         || matches!(letter, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}' | '\u{2029}' | '\u{feff}')
@@ -219,7 +220,7 @@ pub fn acts(letter: char) -> bool {
         || ('\u{2066}'..='\u{2069}').contains(&letter)
 }
 
-/// Text that means itself in HTML and in its attributes; what XML forbids is left out.
+/// Escapes text for HTML content and attributes. Removes characters that XML forbids.
 pub fn escaped_html(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for letter in text.chars() {
@@ -237,7 +238,7 @@ pub fn escaped_html(text: &str) -> String {
     safe
 }
 
-/// Text as a terminal may get it: letters that [act](acts) are written out; line ends and tabs stay.
+/// Makes text safe for a terminal: characters that [act](acts) are escaped; line ends and tabs are kept.
 pub fn printable(text: &str) -> Cow<'_, str> {
     if !text.contains(acts) {
         return Cow::Borrowed(text);
@@ -247,17 +248,17 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(text.chars().map(written).collect())
 }
 
-/// A text that begins with a capital letter.
+/// Capitalizes the first letter.
 pub fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// Text as a cell of a table that other programs open: printable, and with `'` before what a spreadsheet would take for a
-/// formula. Numbers stay as they are.
+/// Makes text safe for a CSV cell: printable, and with `'` before anything a spreadsheet would read as a formula.
+/// Numbers are unchanged.
 pub fn csv_cell(text: &str) -> Cow<'_, str> {
     let text = printable(text);
-    // Blanks before it keep no formula from being one.
+    // Spreadsheets ignore blanks before a formula.
     let first = text.chars().find(|letter| !letter.is_whitespace());
     let is_number = text.bytes().all(|byte| byte.is_ascii_digit() || b"+-.eE".contains(&byte))
         && text.parse::<f64>().is_ok();

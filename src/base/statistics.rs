@@ -1,34 +1,34 @@
-//! A few numbers told: mean, spread, quantiles, and how far from the truth they may be.
+//! Statistics of small samples: mean, spread, quantiles, and their uncertainty.
 //!
-//! Intervals are percentile bootstraps: the numbers are drawn again with replacement, [`RESAMPLES`] times, from a stream whose
-//! seed depends on nothing but how many they are. Equal numbers give equal intervals, today and on every machine.
+//! Intervals are percentile bootstraps: the numbers are resampled with replacement, [`RESAMPLES`] times, from a
+//! stream whose seed depends only on their count. Equal numbers give equal intervals on every machine.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Resamples behind an interval.
+/// Number of resamples for an interval.
 pub const RESAMPLES: usize = 2_000;
 
-/// Share of resamples that lies within an interval.
+/// Share of resamples in an interval.
 pub const LEVEL: f64 = 0.95;
 
-/// Fewest numbers that have an interval. Below it even numbers that all agree in their sign leave chance more than 1 - [`LEVEL`]
-/// (of six, 2 in 64), and resampling tells little but their range.
+/// Minimum sample size for an interval. With fewer values, all signs agree by chance more often than 1 - [`LEVEL`] (with
+/// six: 2 in 64), and resampling shows little more than their range.
 pub const LEAST: usize = 6;
 
 /// Mean and sample standard deviation of a set of numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
-    /// How many.
+    /// Number of values.
     pub count: usize,
     /// Mean.
     pub mean: f64,
-    /// Sample standard deviation (n - 1); 0 below two numbers.
+    /// Sample standard deviation (n - 1); 0 with fewer than two values.
     pub std: f64,
 }
 
 impl Sample {
-    /// Of numbers in any order.
+    /// Computes the statistics of values in any order.
     pub fn of(values: &[f64]) -> Sample {
         let (count, mean) = (values.len(), mean(values));
         let squares: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
@@ -37,43 +37,43 @@ impl Sample {
     }
 }
 
-/// Mean of numbers; 0 without any.
+/// Returns the mean; 0 without values.
 pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
-/// Quantile of numbers in any order, linear between neighbours; none without any.
+/// Returns a quantile of values in any order, interpolated linearly; `None` without values.
 pub fn quantile(values: &[f64], share: f64) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     quantile_of_sorted(&sorted, share)
 }
 
-/// The value below which a share of some sorted values lies, between two of them where it falls between.
+/// Returns a quantile of sorted values, interpolated linearly; `None` without values.
 pub fn quantile_of_sorted(sorted: &[f64], share: f64) -> Option<f64> {
     let place = share * sorted.len().checked_sub(1)? as f64;
     let (below, above) = (sorted[place.floor() as usize], sorted[place.ceil() as usize]);
     Some(below + (above - below) * place.fract())
 }
 
-/// The middle of numbers in any order; none without any.
+/// Returns the median of values in any order; `None` without values.
 pub fn median(values: &[f64]) -> Option<f64> {
     quantile(values, 0.5)
 }
 
-/// The middle half of a set of numbers.
+/// Quartiles of a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quartiles {
-    /// A quarter has less.
+    /// First quartile.
     pub lower: f64,
-    /// Half has less.
+    /// Median.
     pub median: f64,
-    /// A quarter has more.
+    /// Third quartile.
     pub upper: f64,
 }
 
 impl Quartiles {
-    /// Of numbers in any order; none without any.
+    /// Computes the quartiles of values in any order; `None` without values.
     pub fn of(values: &[f64]) -> Option<Quartiles> {
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
@@ -92,12 +92,12 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Where the mean of what these numbers were drawn from lies; none of fewer than [`LEAST`].
+    /// Returns the interval of the mean; `None` for fewer than [`LEAST`] values.
     pub fn of_mean(values: &[f64]) -> Option<Interval> {
         bootstrap(values, |drawn| Some(mean(drawn)))
     }
 
-    /// Where the median of what these numbers were drawn from lies; none of fewer than [`LEAST`].
+    /// Returns the interval of the median; `None` for fewer than [`LEAST`] values.
     pub fn of_median(values: &[f64]) -> Option<Interval> {
         bootstrap(values, |drawn| {
             drawn.sort_by(f64::total_cmp);
@@ -106,10 +106,10 @@ impl Interval {
     }
 }
 
-/// Percentile bootstrap of a statistic, [`LEVEL`] of [`RESAMPLES`] resamples; none where it has no value, and of fewer than
-/// [`LEAST`] numbers.
+/// Returns the percentile bootstrap interval of a statistic: [`LEVEL`] of [`RESAMPLES`] resamples. `None` if the
+/// statistic has no value, or for fewer than [`LEAST`] values.
 ///
-/// The statistic may put the numbers into another order.
+/// The statistic may reorder the values.
 pub fn bootstrap(values: &[f64], statistic: impl Fn(&mut [f64]) -> Option<f64>) -> Option<Interval> {
     let count = u32::try_from(values.len()).ok().filter(|_| values.len() >= LEAST)?;
     let mut rng = ChaCha8Rng::seed_from_u64(u64::from(count));
@@ -124,21 +124,21 @@ pub fn bootstrap(values: &[f64], statistic: impl Fn(&mut [f64]) -> Option<f64>) 
     Some(Interval { low: at((1.0 - LEVEL) / 2.0)?, high: at((1.0 + LEVEL) / 2.0)? })
 }
 
-/// How much more one of two has than the other, pair by pair: the same luck, another decision.
+/// Paired difference of two samples on the same seeds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PairedDifference {
     /// Mean of the differences.
     pub mean: f64,
-    /// Where the mean lies; none of fewer pairs than [`LEAST`].
+    /// Interval of the mean; `None` for fewer than [`LEAST`] pairs.
     pub interval: Option<Interval>,
-    /// Pairs in which the first has more.
+    /// Number of pairs in which the first value is larger.
     pub more: u32,
-    /// Pairs that were compared.
+    /// Number of compared pairs.
     pub of: u32,
 }
 
 impl PairedDifference {
-    /// Of pairs, what each has of them; pairs without a value in both are left out. None without pairs.
+    /// Computes the difference of pairs. Skips pairs with a missing value; `None` without pairs.
     pub fn of(pairs: impl IntoIterator<Item = (f64, f64)>) -> Option<PairedDifference> {
         let differences = pairs.into_iter().map(|(own, other)| own - other);
         let differences: Vec<f64> = differences.filter(|own| !own.is_nan()).collect();
@@ -171,17 +171,13 @@ mod tests {
 
     #[test]
     fn the_interval_of_a_mean_has_the_width_of_its_error() {
-        // Spread 1, twenty values: the mean is known to 1.96 / sqrt(20) = 0.44 on both sides.
+        // With standard deviation 1 and twenty values, the mean is known to ±1.96 / sqrt(20) = 0.44.
         let values: Vec<f64> = (0..20).map(|at| if at % 2 == 0 { 1.0 } else { -1.0 }).collect();
         let own = Interval::of_mean(&values).expect("values");
         assert!((-0.5..-0.35).contains(&own.low) && (0.35..0.5).contains(&own.high), "{own:?}");
         assert_eq!(Interval::of_mean(&values), Some(own), "the same numbers, the same interval");
         assert_eq!(Interval::of_mean(&[]), None);
-        assert_eq!(
-            Interval::of_mean(&[3.0; LEAST - 1]),
-            None,
-            "too few to tell how far others are from them"
-        );
+        assert_eq!(Interval::of_mean(&[3.0; LEAST - 1]), None, "too few values for an interval");
         assert_eq!(Interval::of_mean(&[3.0; LEAST]), Some(Interval { low: 3.0, high: 3.0 }));
     }
 

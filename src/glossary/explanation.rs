@@ -1,4 +1,4 @@
-//! What there is to say of a subject, in sections that any place can show.
+//! Explanations of subjects, in sections that any interface can show.
 
 use std::fmt::Write;
 
@@ -9,29 +9,29 @@ use novamind_tools::{Argument, Numbers, Spec};
 /// A part of an explanation.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Section {
-    /// Word for it; empty for the first one, which says what the subject is.
+    /// Label; empty for the first section, which defines the subject.
     pub name: &'static str,
-    /// Text; may have several lines.
+    /// Text, possibly several lines.
     pub text: String,
 }
 
-/// What there is to say.
+/// An explanation.
 #[derive(Debug, Clone)]
 pub struct Explanation {
-    /// As the subject is written.
+    /// Display name of the subject.
     pub title: String,
-    /// What it belongs to, in a few words.
+    /// Category in a few words.
     pub note: String,
-    /// Texts.
+    /// Sections.
     pub sections: Vec<Section>,
-    /// Subjects that help to understand it.
+    /// Related subjects.
     pub related: Vec<Subject>,
-    /// Screens and dialogs that show it, by the names of their actions.
+    /// Screens and dialogs that show the subject, by action name.
     pub places: &'static [String],
 }
 
 impl Explanation {
-    /// Explains a subject with the numbers in force.
+    /// Explains a subject with the parameters in force.
     pub fn of(subject: Subject, numbers: &Numbers) -> Explanation {
         let (note, sections, related, places) = match subject {
             Subject::Term(term) => of_term(term),
@@ -45,7 +45,7 @@ impl Explanation {
         Explanation { title: subject.title(), note, sections, related, places }
     }
 
-    /// The explanation as lines of text.
+    /// Returns the explanation as lines of text.
     pub fn as_text(&self) -> String {
         let mut text = format!("{} ({})\n", self.title, self.note);
         for section in &self.sections {
@@ -85,10 +85,10 @@ fn of_tool(spec: &'static Spec) -> Parts {
     let sections = vec![
         section("", sentence(spec.summary)),
         section("effect", spec.effect),
-        section("felt", spec.when.id()),
+        section("takes effect", spec.when.id()),
         section("cost", spec.cost),
-        section("takes", arguments.join("\n")),
-        section("refused as", spec.refusals.join(", ")),
+        section("arguments", arguments.join("\n")),
+        section("rejection codes", spec.refusals.join(", ")),
         section("example", format!("{}({})", spec.name(), spec.example)),
     ];
     let terms = super::terms().iter().filter(|term| term.tools.iter().any(|name| name == spec.name()));
@@ -100,9 +100,9 @@ fn of_tool(spec: &'static Spec) -> Parts {
 
 fn of_argument(spec: &'static Spec, argument: &'static Argument) -> Parts {
     let default = match (argument.required, spec.kind) {
-        (true, _) => "must be given",
-        (false, novamind_tools::Kind::Setting) => "may be left out: then what holds stays",
-        (false, _) => "may be left out",
+        (true, _) => "required",
+        (false, novamind_tools::Kind::Setting) => "optional; unchanged if omitted",
+        (false, _) => "optional",
     };
     let sections = vec![
         section("", sentence(argument.doc)),
@@ -110,9 +110,9 @@ fn of_argument(spec: &'static Spec, argument: &'static Argument) -> Parts {
         section("range", argument.kind.words()),
         section("default", default),
         section("effect", spec.effect),
-        section("felt", spec.when.id()),
+        section("takes effect", spec.when.id()),
         section("cost", spec.cost),
-        section("refused as", spec.refusals.join(", ")),
+        section("rejection codes", spec.refusals.join(", ")),
     ];
     let terms = super::terms().iter().filter(|term| term.tools.iter().any(|name| name == spec.name()));
     let related = std::iter::once(Subject::Tool(spec)).chain(terms.map(Subject::Term)).collect();
@@ -124,7 +124,7 @@ fn of_table(table: &'static Table) -> Parts {
     let sections = vec![
         section("", sentence(&table.description)),
         section("written", table.written.clone()),
-        section("a row is named by", table.key.join(", ")),
+        section("key", table.key.join(", ")),
         section("columns", columns.join(", ")),
     ];
     let terms = super::terms().iter().filter(|term| term.tables.contains(&table.name));
@@ -145,7 +145,6 @@ fn of_column(table: &'static Table, column: &'static Column) -> Parts {
     (format!("column of {}", table.name), sections, related, &[])
 }
 
-/// Documentation as a sentence: it begins large and ends with a full stop.
 fn sentence(text: &str) -> String {
     let mut letters = text.trim_end_matches('.').chars();
     match letters.next() {
@@ -159,7 +158,7 @@ mod tests {
     use super::*;
 
     fn explained(name: &str) -> Explanation {
-        Explanation::of(subject(name).unwrap_or_else(|| panic!("{name} is nothing")), &Numbers::shipped())
+        Explanation::of(subject(name).unwrap_or_else(|| panic!("{name} is unknown")), &Numbers::shipped())
     }
 
     #[test]
@@ -183,9 +182,9 @@ mod tests {
             "List price of plan A.",
             "unit: $/month",
             "range: number, > 0",
-            "default: may be left out: then what holds stays",
-            "felt: ",
-            "refused as: ",
+            "default: optional; unchanged if omitted",
+            "takes effect: ",
+            "rejection codes: ",
             "see: set_prices, plan",
         ] {
             assert!(text.contains(part), "{part} is missing in\n{text}");

@@ -1,7 +1,7 @@
-//! Words that explain: the terms of the company, and what the documentation of tools and tables says of a name.
+//! The glossary: terms of the company, and the documentation of tools and tables.
 //!
-//! Terms are written in `assets/glossary.toml`; they say no more than screens, tools and tables tell everybody.
-//! Screens and plain mode ask for an [`Explanation`] of a [`Subject`] and show it each in its own way.
+//! Terms are defined in `assets/glossary.toml` and contain only information visible to players. Interfaces request an
+//! [`Explanation`] of a [`Subject`] and display it in their own way.
 
 mod explanation;
 mod subject;
@@ -13,34 +13,34 @@ use serde::{Deserialize, Serialize};
 pub use explanation::Explanation;
 pub use subject::{Subject, find, subject};
 
-/// A term.
+/// A term of the glossary.
 #[derive(Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Term {
-    /// Name in kebab-case, for instance `delivered-quality`.
+    /// ID in kebab-case, for example `delivered-quality`.
     pub id: String,
-    /// What it belongs to: money, customers, product …
+    /// Topic: money, customers, product …
     pub topic: String,
-    /// As it is written.
+    /// Display name.
     pub title: String,
-    /// Other words for it.
+    /// Synonyms.
     #[serde(default)]
     pub aka: Vec<String>,
-    /// What it is, in one sentence.
+    /// Definition in one sentence.
     pub text: String,
-    /// How it is counted and what else there is to know.
+    /// Computation and other details.
     #[serde(default)]
     pub more: String,
-    /// Other terms that help to understand it.
+    /// IDs of related terms.
     #[serde(default)]
     pub see: Vec<String>,
-    /// Screens and dialogs that show it, by the names of their actions.
+    /// Screens and dialogs that show it, by action name.
     #[serde(default)]
     pub places: Vec<String>,
-    /// Tools that set or tell it.
+    /// Tools that set or return it.
     #[serde(default)]
     pub tools: Vec<String>,
-    /// Tables that hold it.
+    /// Tables that contain it.
     #[serde(default)]
     pub tables: Vec<String>,
 }
@@ -52,20 +52,20 @@ struct Book {
 
 static TERMS: LazyLock<Vec<Term>> = LazyLock::new(|| {
     let text = include_str!("../../assets/glossary.toml");
-    toml::from_str::<Book>(text).expect("a test reads the shipped glossary").term
+    toml::from_str::<Book>(text).expect("the bundled glossary is valid").term
 });
 
-/// All terms, by topic.
+/// Returns all terms, ordered by topic.
 pub fn terms() -> &'static [Term] {
     &TERMS
 }
 
-/// The term with this id.
+/// Returns the term with this ID.
 pub fn term(id: &str) -> Option<&'static Term> {
     TERMS.iter().find(|term| term.id == id)
 }
 
-/// The terms that a screen or dialog shows, by the name of its action.
+/// Returns the terms that a screen or dialog shows, by action name.
 pub fn terms_of(place: &str) -> impl Iterator<Item = &'static Term> {
     TERMS.iter().filter(move |term| term.places.iter().any(|own| own == place))
 }
@@ -84,9 +84,9 @@ mod tests {
             let plain =
                 |letter: char| letter.is_ascii_lowercase() || letter.is_ascii_digit() || letter == '-';
             assert!(!term.id.is_empty() && term.id.chars().all(plain), "{}", term.id);
-            assert!(ids.insert(&term.id), "{} stands twice", term.id);
+            assert!(ids.insert(&term.id), "{} is defined twice", term.id);
             for word in std::iter::once(&term.title).chain(&term.aka) {
-                assert!(words.insert(word.to_lowercase()), "{word} means two terms");
+                assert!(words.insert(word.to_lowercase()), "{word} is used by two terms");
             }
         }
         assert!(ids.len() >= 100, "{}", ids.len());
@@ -100,8 +100,8 @@ mod tests {
             tables
                 .iter()
                 .for_each(|table| assert!(novamind_database::table(table).is_some(), "{id} names {table}"));
-            assert!(!places.is_empty() || !tools.is_empty() || !tables.is_empty(), "{id} is nowhere");
-            assert!(!see.is_empty(), "{id} leads nowhere");
+            assert!(!places.is_empty() || !tools.is_empty() || !tables.is_empty(), "{id} has no place");
+            assert!(!see.is_empty(), "{id} has no related term");
         }
     }
 
@@ -110,10 +110,10 @@ mod tests {
         let mut topics: Vec<&str> = Vec::new();
         for term in terms() {
             assert!(term.text.ends_with('.') && !term.text.contains(". "), "{}: one sentence", term.id);
-            assert!(!term.text.contains('{'), "{}: figures belong into `more`, which is filled in", term.id);
+            assert!(!term.text.contains('{'), "{}: figures belong in `more`, which is filled in", term.id);
             assert!(term.more.is_empty() || term.more.ends_with('.'), "{}", term.id);
             if topics.last() != Some(&term.topic.as_str()) {
-                assert!(!topics.contains(&term.topic.as_str()), "{} is torn apart", term.topic);
+                assert!(!topics.contains(&term.topic.as_str()), "topic {} is not contiguous", term.topic);
                 topics.push(&term.topic);
             }
         }
@@ -130,7 +130,7 @@ mod tests {
         };
         for name in sealed.lines().skip(1).flat_map(|line| line.split(',')) {
             let telling = name.contains('_') && !visible(name);
-            assert!(!telling || !text.contains(name), "{name} is sealed");
+            assert!(!telling || !text.contains(name), "{name} is hidden");
         }
     }
 }

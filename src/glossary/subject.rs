@@ -1,11 +1,11 @@
-//! What can be explained, and how it is found by a name or by words.
+//! Subjects that can be explained, and their lookup.
 
 use super::{Term, term, terms};
 use novamind_base::nearest;
 use novamind_database::{Column, Table};
 use novamind_tools::{Argument, Spec};
 
-/// Something that can be explained.
+/// A subject that can be explained.
 #[derive(Debug, Clone, Copy)]
 pub enum Subject {
     /// A term of the glossary.
@@ -21,7 +21,7 @@ pub enum Subject {
 }
 
 impl Subject {
-    /// The name by which it is found.
+    /// Returns the name for lookup.
     pub fn name(&self) -> String {
         match self {
             Subject::Term(term) => term.id.clone(),
@@ -32,7 +32,7 @@ impl Subject {
         }
     }
 
-    /// As it is written.
+    /// Returns the display name.
     pub fn title(&self) -> String {
         match self {
             Subject::Term(term) => term.title.clone(),
@@ -40,7 +40,7 @@ impl Subject {
         }
     }
 
-    /// What it is.
+    /// Returns the kind of subject.
     pub fn kind(&self) -> &'static str {
         match self {
             Subject::Term(_) => "term",
@@ -52,8 +52,8 @@ impl Subject {
     }
 }
 
-/// What a name stands for: a term (`churn`), a tool or its argument (`set_prices`, `set_prices.A`), a table or its column
-/// (`ledger`, `ledger.amount`). A part of a tool that is no argument of its own is explained by the tool.
+/// Looks up an exact name: a term (`churn`), a tool or argument (`set_prices`, `set_prices.A`), a table or column
+/// (`ledger`, `ledger.amount`). Parts of a tool that are not arguments resolve to the tool.
 pub fn subject(name: &str) -> Option<Subject> {
     if let Some(term) = term(name) {
         return Some(Subject::Term(term));
@@ -74,10 +74,10 @@ pub fn subject(name: &str) -> Option<Subject> {
     Some(argument.map_or(Subject::Tool(spec), |argument| Subject::Argument(spec, argument)))
 }
 
-/// What words stand for, as people type them: case and dashes do not count, other words for a term do.
+/// Looks up words as users type them, ignoring case and dashes and including synonyms.
 ///
 /// # Errors
-/// Nothing is called like this: names that look like it.
+/// Returns similar names if nothing matches.
 pub fn find(words: &str) -> Result<Subject, Vec<&'static str>> {
     let typed = plain(words);
     let called = |term: &&Term| {
@@ -96,9 +96,9 @@ pub fn find(words: &str) -> Result<Subject, Vec<&'static str>> {
         .ok_or_else(|| near(&typed))
 }
 
-/// The tool that answers with a field of this name: its manual says what the field is.
+/// Returns the tool that answers with a field of this name, because its manual describes the field.
 fn answered(field: &str) -> Option<Subject> {
-    // A word of a type is no name of a field.
+    // A single word is more likely a type than a field.
     if !field.contains('_') && field != "description" {
         return None;
     }
@@ -112,12 +112,12 @@ fn answered(field: &str) -> Option<Subject> {
     novamind_tools::CATALOGUE.iter().map(|tool| tool.spec()).find(answers).map(Subject::Tool)
 }
 
-/// Words without a remark in brackets at their end, as in `Overload (peak)`.
+/// Removes a remark in brackets at the end, as in `Overload (peak)`.
 fn without_remark(words: &str) -> Option<&str> {
     words.trim().strip_suffix(')')?.split_once('(').map(|(words, _)| words)
 }
 
-/// Names that look like one that does not exist; those that hold it first.
+/// Returns similar names, those that contain the words first.
 fn near(typed: &str) -> Vec<&'static str> {
     let names = || terms().iter().map(|term| term.id.as_str());
     let mut found: Vec<&str> = if typed.len() < 3 {

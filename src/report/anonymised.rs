@@ -1,89 +1,91 @@
-//! The tables of a study without what tells who took part: other labels and names of runs, times since the start of each
-//! run, no texts that people wrote, machines under other names.
+//! Anonymized tables of a study: new labels and run names, times relative to the start of each run, no texts written
+//! by people, and renamed machines.
 //!
-//! Everything follows from a secret that the experimenter keeps, so tables that are collected later fit. Each run names the
-//! hash of the last hash of its sealed original: whoever has the original can show that it is the one.
+//! All new names derive from a secret that the experimenter keeps, so tables collected later are consistent. Each run
+//! contains the hash of its sealed original's last hash. Anyone who has the original can prove that it belongs to the
+//! run.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::tables::{Heading, headings};
 
-/// A table by its name: rows, the names of the columns first.
+/// A table's name and rows; the first row is the header.
 pub type NamedTable = (String, Vec<Vec<String>>);
 
-/// What becomes of texts that people wrote.
+/// Treatment of texts written by people.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Texts {
-    /// Nothing is left of them.
+    /// Removes them.
     Dropped,
-    /// Their lengths are left.
+    /// Replaces them with their length in characters.
     Masked,
 }
 
-/// Old and new names of a run: for the experimenter alone.
+/// Old and new names of a run, for the experimenter only.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Link {
     /// Label of the participant.
     pub participant: String,
     /// Their new label.
     pub new_participant: String,
-    /// Run.
+    /// Run ID.
     pub run: String,
-    /// Its new name.
+    /// New run ID.
     pub new_run: String,
     /// Hash of the last line of the original.
     pub last_hash: String,
-    /// Hash of that, as the anonymised table has it.
+    /// Hash of `last_hash`, as in the anonymized table.
     pub original: String,
 }
 
-/// The columns of the table of links.
+/// Column names of the table of links.
 pub const LINKS: [&str; 6] = ["participant", "new_participant", "run", "new_run", "last_hash", "original"];
 
-/// Columns that are left out: they tell a person apart by what others know.
+// People who know a participant could identify them by these columns.
 const LEFT_OUT: [(&str, &str); 4] =
     [("runs", "assigned_order"), ("runs", "problem"), ("notes", "digest"), ("visits", "folder")];
 
-/// Columns that say which session it was: few people share what they say together.
+// Columns that describe a session's design. Rare combinations can identify a participant.
 const DESIGN: [&str; 2] = ["seed", "condition"];
 
-/// Columns without which tables cannot be joined.
+/// Columns that join the tables.
 const NEEDED: [&str; 2] = ["run", "participant"];
 
-/// Tables without what tells who took part.
+/// The result of anonymization.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Anonymous {
     /// The tables.
     pub tables: Vec<NamedTable>,
     /// The links to the originals.
     pub links: Vec<Link>,
-    /// Sessions of the smallest group that agrees in what is left of seed and condition, with what it agrees in; none where
-    /// neither is left, or there is no session.
+    /// Size and shared values of the smallest group of sessions with the same seed and condition, as far as
+    /// these columns are kept.
+    /// `None` if neither is kept or no session exists.
     pub smallest_group: Option<(usize, String)>,
 }
 
-/// Makes tables anonymous with a secret.
+/// Replaces identifying values, keyed by a secret.
 pub struct Anonymiser {
     secret: [u8; 32],
     texts: Texts,
-    /// Further columns that are left out.
+    /// Columns to omit in addition to `LEFT_OUT`.
     without: Vec<String>,
-    /// When each run began, nanoseconds since 1970.
+    /// Start of each run, in nanoseconds since 1970.
     began: BTreeMap<String, i64>,
-    /// When somebody first came under a label, nanoseconds since 1970.
+    /// First use of each label, in nanoseconds since 1970.
     came: BTreeMap<String, i64>,
 }
 
 impl Anonymiser {
-    /// One with a secret of the experimenter; the columns `without` are left out of every table.
+    /// Returns an anonymizer that also omits the columns `without` from every table.
     pub fn new(secret: [u8; 32], texts: Texts, without: Vec<String>) -> Anonymiser {
         Anonymiser { secret, texts, without, began: BTreeMap::new(), came: BTreeMap::new() }
     }
 
-    /// The tables of an export or a collection without what tells who took part, and the links to the originals.
+    /// Returns the anonymized tables of an export or a collection, and the links to the originals.
     ///
     /// # Errors
-    /// A table or column is missing, or two names would become one.
+    /// Returns an error if a table or column is missing, or if two names would become the same.
     pub fn anonymise(&mut self, tables: &[NamedTable]) -> Result<Anonymous, String> {
         let all = |name: &str| {
             let found = tables.iter().find(|(own, _)| own == name).map(|(_, rows)| rows.as_slice());
@@ -109,7 +111,7 @@ impl Anonymiser {
         if distinct(|link| &link.participant) != distinct(|link| &link.new_participant)
             || distinct(|link| &link.run) != distinct(|link| &link.new_run)
         {
-            return Err("two names would become one: take another secret".to_owned());
+            return Err("two names would become the same; use a different secret".to_owned());
         }
         links.sort_by(|one: &Link, other| {
             (&one.new_participant, &one.new_run).cmp(&(&other.new_participant, &other.new_run))
@@ -132,10 +134,10 @@ impl Anonymiser {
         LEFT_OUT.contains(&(table, column)) || self.without.iter().any(|own| own == column)
     }
 
-    /// The columns to leave out are columns, and none that the tables need.
+    /// Checks that the columns to omit exist and that no table needs them.
     ///
     /// # Errors
-    /// The first that is none, or that joins the tables.
+    /// Names the first column that does not exist or that joins the tables.
     pub fn check_left_out(&self) -> Result<(), String> {
         let known = |name: &str| headings().iter().any(|(_, own)| own.iter().any(|own| own.name == *name));
         for name in &self.without {
@@ -149,7 +151,6 @@ impl Anonymiser {
         Ok(())
     }
 
-    /// When each label first came.
     fn note_visits(&mut self, rows: &[Vec<String>]) -> Result<(), String> {
         let (label, at) = (place(rows, "participant")?, place(rows, "at")?);
         for row in rows.iter().skip(1).filter(|row| !row[label].is_empty()) {
@@ -159,7 +160,6 @@ impl Anonymiser {
         Ok(())
     }
 
-    /// The sessions that agree in what is left of the design.
     fn smallest_group(&self, runs: &[Vec<String>]) -> Result<Option<(usize, String)>, String> {
         let left: Vec<&str> = DESIGN.into_iter().filter(|name| !self.leaves_out("runs", name)).collect();
         if left.is_empty() {
@@ -187,7 +187,7 @@ impl Anonymiser {
             let known: BTreeMap<&str, &str> =
                 rows[0].iter().map(String::as_str).zip(row.iter().map(String::as_str)).collect();
             if known.get("run").is_some_and(|run| !self.began.contains_key(*run)) {
-                // A run that could not be read tells nothing but its name.
+                // A run that could not be read has only a name.
                 continue;
             }
             let cells = columns.iter().zip(&places);
@@ -195,7 +195,7 @@ impl Anonymiser {
             let of = |name: &str| known.get(name).copied().unwrap_or_default();
             made.push(((self.label(of("participant")), self.run(of("run"))), cells.collect()));
         }
-        // The order of the originals tells who came when. Lines of one run keep theirs.
+        // The original order reveals when participants came. Lines within a run keep theirs.
         made.sort_by(|one: &((String, String), Vec<String>), other| one.0.cmp(&other.0));
         let head = columns.iter().map(|own| new_name(own).to_owned()).collect();
         Ok(std::iter::once(head).chain(made.into_iter().map(|(_, row)| row)).collect())
@@ -236,11 +236,10 @@ impl Anonymiser {
         since(self.began.get(run), at)
     }
 
-    /// Machines and starts of them get other names.
     fn detail(&self, detail: &str) -> String {
         let part = |part: &str| match part.split_once('=') {
             Some((name @ ("machine" | "boot"), value)) => format!("{name}={}", self.keyed(name, value, 16)),
-            // It counts from when the machine was started.
+            // It counts from the start of the machine.
             Some(("monotonic_ms", _)) => "monotonic_ms=".to_owned(),
             _ => part.to_owned(),
         };
@@ -261,14 +260,14 @@ impl Anonymiser {
     }
 }
 
-/// Whether an event is a call whose arguments hold no words of a person: a setting or a purchase that was accepted.
+/// Returns whether an event is an accepted setting or purchase, whose arguments contain no free text.
 fn is_setting(row: &BTreeMap<&str, &str>) -> bool {
     let of = |name: &str| row.get(name).copied().unwrap_or_default();
     let begins = ["set_", "start_research", "research_"].iter().any(|begin| of("what").starts_with(begin));
     of("kind") == "call" && of("value") == "accepted" && begins
 }
 
-/// Seconds from a moment in nanoseconds since 1970 to another; empty where there is none to count from.
+/// Returns the seconds from `began`, in nanoseconds since 1970, to `at`; empty if `began` is `None`.
 fn since(began: Option<&i64>, at: &str) -> String {
     began.map_or(String::new(), |began| {
         let passed = novamind_record::clock::nanoseconds(at) - began;
@@ -276,7 +275,6 @@ fn since(began: Option<&i64>, at: &str) -> String {
     })
 }
 
-/// What stands for the sealed original: the hash of its last hash.
 fn original(last_hash: &str) -> String {
     blake3::hash(last_hash.as_bytes()).to_hex().to_string()
 }
@@ -288,7 +286,7 @@ fn new_name(column: &Heading) -> &str {
 fn described_column(table: &str, column: &Heading) -> Vec<String> {
     let (unit, meaning) = match (column.unit, &*column.name) {
         ("RFC 3339", _) if table == "visits" => {
-            ("seconds", format!("{}, as seconds since somebody first came under the label", column.meaning))
+            ("seconds", format!("{}, as seconds since the first use of the label", column.meaning))
         }
         ("RFC 3339", _) => ("seconds", format!("{}, as seconds since the run began", column.meaning)),
         (unit, "last_hash") => {
@@ -299,8 +297,7 @@ fn described_column(table: &str, column: &Heading) -> Vec<String> {
     vec![table.to_owned(), new_name(column).to_owned(), unit.to_owned(), meaning]
 }
 
-/// Where a column stands.
 fn place(rows: &[Vec<String>], name: &str) -> Result<usize, String> {
     let found = rows.first().and_then(|head| head.iter().position(|own| own == name));
-    found.ok_or_else(|| format!("the column {name} is missing: collect the study again with this version"))
+    found.ok_or_else(|| format!("the column {name} is missing: use this version to collect the study again"))
 }

@@ -1,5 +1,5 @@
-//! What is known of a run: money by category and week, as the session booked it; groups by week and leads by channel, from
-//! guarded queries over the visible tables. What the database does not answer is named and left out.
+//! Data for reports: money by category and week from the ledger; groups by week and leads by channel from guarded
+//! queries over the visible tables. Queries that fail are listed and their data is omitted.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use novamind_record::figures::Booked;
 use novamind_session::Session;
 use novamind_session::identifiers::Group;
 
-/// Who came and left by week and group. A deal that was left early ends in the future: it counts from the last day.
+// A deal cancelled early can end after the last day; it counts on the last day.
 const FLOWS: &str = "SELECT (s.start_day + 6) / 7 AS week, c.group_id, count(*), sum(s.seat_count)
 FROM subscriptions s CROSS JOIN customers c
 WHERE c.customer_id = s.customer_id AND s.status IN ('subscribed', 'cancelled') GROUP BY 1, 2
@@ -19,7 +19,7 @@ SELECT (min(s.end_day, (SELECT max(day) FROM service_day)) + 6) / 7, c.group_id,
 FROM subscriptions s CROSS JOIN customers c
 WHERE c.customer_id = s.customer_id AND s.status = 'cancelled' GROUP BY 1, 2";
 
-/// The first customer is the market observer, who signs news.
+// Customer 1 is the market observer, the author of news.
 const LEADS: &str = "SELECT group_id, count(*) FROM customers WHERE customer_id > 1 GROUP BY 1";
 
 const REVENUE: &str = "SELECT c.group_id, sum(s.effective_price * s.seat_count)
@@ -31,16 +31,16 @@ const CHANNELS: &str =
 
 const OUTAGES: &str = "SELECT day, downtime_minutes FROM service_day WHERE downtime_minutes > 0 ORDER BY day";
 
-/// Ads on one channel for one group.
+/// Advertising of one channel for one group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ChannelRow {
     /// Group.
     pub group: String,
     /// Channel.
     pub channel: String,
-    /// Leads that came through the pair.
+    /// Leads of this channel and group.
     pub leads: f64,
-    /// Dollars spent on the pair.
+    /// Dollars spent on this channel and group.
     pub spend: f64,
 }
 
@@ -49,33 +49,33 @@ pub struct ChannelRow {
 pub struct GroupBook {
     /// Group.
     pub group: Group,
-    /// Everybody who came.
+    /// All leads.
     pub leads: f64,
     /// Subscriptions at the end of each week, week 0 first.
     pub active: Vec<f64>,
-    /// Their seats.
+    /// Seats at the end of each week, week 0 first.
     pub seats: Vec<f64>,
-    /// Dollars a month at the end.
+    /// Monthly revenue at the end, dollars.
     pub revenue: f64,
 }
 
-/// What the database knows of a run.
+/// Data of a run that its tables and ledger contain.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Books {
-    /// Groups that anybody of came from, in their fixed order.
+    /// Groups with at least one lead, in their fixed order.
     pub groups: Vec<GroupBook>,
-    /// Ads by group and channel.
+    /// Advertising by group and channel.
     pub channels: Vec<ChannelRow>,
-    /// Dollars by week and category of the ledger; costs are negative. The first cash is no week's.
+    /// Dollars by week and category of the ledger; costs are negative. Excludes the starting cash.
     pub ledger: BTreeMap<u32, BTreeMap<&'static str, f64>>,
-    /// Outages: day and minutes.
+    /// Day and duration in minutes of each outage.
     pub outages: Vec<(u32, u32)>,
-    /// What could not be read, and why.
+    /// Queries that failed, with their errors.
     pub missing: Vec<String>,
 }
 
 impl Books {
-    /// Asks the database of a run, without a trace in what the person asked.
+    /// Reads the database of a run without recording queries.
     pub fn of(session: &Session) -> Books {
         let connection = session.wait_for_database().and_then(|()| session.database().open_connection());
         let connection = match connection {
@@ -103,7 +103,7 @@ impl Books {
         Books { groups, channels, ledger: ledger_of(session), outages, missing }
     }
 
-    /// Only the ads, for those who need no more; empty if the database does not say.
+    /// Returns advertising only; empty if the query fails.
     pub fn channels_of(session: &Session) -> Vec<ChannelRow> {
         let connection = session.wait_for_database().and_then(|()| session.database().open_connection()).ok();
         let rows =
@@ -111,7 +111,7 @@ impl Books {
         rows.map(|rows| rows.rows.iter().map(|row| channel_of(row)).collect()).unwrap_or_default()
     }
 
-    /// Dollars by category over the whole run.
+    /// Returns dollars by category over the whole run.
     pub fn totals(&self) -> BTreeMap<&str, f64> {
         let mut totals = BTreeMap::new();
         for (category, amount) in self.ledger.values().flatten() {
@@ -158,7 +158,7 @@ fn channel_of(row: &[Cell]) -> ChannelRow {
     }
 }
 
-/// What each week booked, and what was booked since the last one.
+/// Returns the entries of each week, and those since the last week.
 fn ledger_of(session: &Session) -> BTreeMap<u32, BTreeMap<&'static str, f64>> {
     let since = session.company().observe().booked_since;
     let weeks = session.weeks().iter().map(|week| week.booked).chain([since]);
@@ -201,7 +201,7 @@ mod tests {
         assert!(
             books.channels.iter().any(|row| row.channel == "content_marketing" && row.spend == 5.0 * 5250.0)
         );
-        assert!(session.company().asked().is_empty(), "reports leave no trace in what the person asked");
+        assert!(session.company().asked().is_empty(), "reports record no queries");
     }
 
     #[test]
@@ -215,12 +215,12 @@ mod tests {
                 let own = &week[book.group];
                 active += f64::from(own.signed) - f64::from(own.left);
                 assert_eq!(book.active[at + 1], active, "{} in week {}", book.group, at + 1);
-                assert_eq!(book.seats[at + 1], active, "a person takes one seat");
+                assert_eq!(book.seats[at + 1], active, "an individual has one seat");
                 left_before_the_end += if at < 8 { own.left } else { 0 };
             }
             let came: u32 = session.company().group_weeks().iter().map(|week| week[book.group].leads).sum();
             assert_eq!(book.leads, f64::from(came), "{}", book.group);
         }
-        assert!(left_before_the_end > 0, "nobody left, so nothing was tried");
+        assert!(left_before_the_end > 0, "no one cancelled, so the test checked nothing");
     }
 }

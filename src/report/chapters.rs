@@ -1,4 +1,4 @@
-//! What was decided week by week: settings as old → new, what was bought and written, and the first words of why.
+//! Decisions by week: settings as old → new, purchases and messages, and the first line of the rationale.
 
 use serde_json::Value;
 
@@ -7,7 +7,7 @@ use novamind_record::figures::WeekFigures;
 use novamind_session::{Change, Decisions, JournalEntry, week_of};
 use novamind_tools::ToolId;
 
-/// Weeks that began with the same decision: the first of them decided, the others let it stand.
+/// Consecutive weeks under one decision: the first week made it, the others changed nothing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chapter {
     /// First week.
@@ -16,7 +16,7 @@ pub struct Chapter {
     pub last_week: u32,
     /// Decision day.
     pub day: u32,
-    /// Last day that ran.
+    /// Last simulated day.
     pub until: u32,
     /// First line of the rationale.
     pub why: String,
@@ -26,17 +26,17 @@ pub struct Chapter {
     pub deeds: Vec<String>,
     /// Cash at the end, dollars.
     pub cash: f64,
-    /// Its change, dollars.
+    /// Change of cash, dollars.
     pub cash_change: f64,
 }
 
-/// A change as words.
+/// Describes a change: `price A: 0 → 14 $/month`.
 pub fn change_in_words(change: &Change) -> String {
     let told = format!("{}: {} → {}", change.setting, number(change.old), number(change.new));
     change.setting.unit().map_or(told.clone(), |unit| format!("{told} {unit}"))
 }
 
-/// Changes as words, those of one family in one line: `price: A 0 → 14, B 0 → 49 $/month`.
+/// Describes changes, one line per family of settings: `price: A 0 → 14, B 0 → 49 $/month`.
 pub fn changes_in_words(changes: &[Change]) -> Vec<String> {
     let mut families: Vec<(String, Vec<&Change>)> = Vec::new();
     for change in changes {
@@ -62,7 +62,7 @@ pub fn changes_in_words(changes: &[Change]) -> Vec<String> {
     families.into_iter().map(line).collect()
 }
 
-/// The chapters of a run: weeks in which nothing new was decided join the one before them.
+/// Returns the chapters of a run. Weeks without a new decision join the chapter before them.
 pub fn chapters(decisions: &[Decisions], journal: &[JournalEntry], start_cash: f64) -> Vec<Chapter> {
     let mut told: Vec<Chapter> = Vec::new();
     let mut parts = journal.split_inclusive(|entry| matches!(entry, JournalEntry::Week { .. }));
@@ -118,7 +118,7 @@ fn rationale_of(entry: &JournalEntry) -> Option<String> {
     }
 }
 
-/// Purchases and offers in words, equal ones counted; posts with what they say.
+/// Lists purchases and offers, with repeated ones counted, and posts with their texts.
 fn deeds(decided: &Decisions, entries: &[JournalEntry]) -> Vec<String> {
     let posts = entries.iter().filter_map(|entry| match entry {
         JournalEntry::Call { tool, args, .. } if *tool == ToolId::PostSocialMedia => {
@@ -127,7 +127,7 @@ fn deeds(decided: &Decisions, entries: &[JournalEntry]) -> Vec<String> {
         _ => None,
     });
     let mut deeds: Vec<(String, u32)> = Vec::new();
-    // The words of a post stand for the sentence that it was published.
+    // The text of a post replaces the sentence that it was published.
     for deed in decided.purchases.iter().filter(|deed| !deed.starts_with("post ")).cloned().chain(posts) {
         match deeds.iter_mut().find(|(known, _)| *known == deed) {
             Some((_, times)) => *times += 1,
@@ -149,7 +149,7 @@ mod tests {
         let session = test_kit::played(5);
         let told = chapters(session.company().decisions(), session.journal(), 1_000_000.0);
         let weeks: Vec<(u32, u32)> = told.iter().map(|chapter| (chapter.week, chapter.last_week)).collect();
-        assert_eq!(weeks, [(1, 2), (3, 3), (4, 5)], "the third week has a reason of its own");
+        assert_eq!(weeks, [(1, 2), (3, 3), (4, 5)], "the third week has its own rationale");
         let prices = "price: A 0 → 12, B 0 → 25, C 0 → 55 $/month";
         assert!(told[0].changes.contains(&prices.to_owned()), "{:?}", told[0].changes);
         let post = "post: “NovaMind <opens> today | with *three* plans & fair prices.”";

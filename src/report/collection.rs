@@ -1,4 +1,5 @@
-//! A study collected: the runs of all machines in one folder, each once and verified by simulation, with their tables.
+//! Collection of a study: the verified runs of all machines in one folder, without duplicates, and their
+//! tables.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -12,29 +13,29 @@ use novamind_study::{
     CollectNote, FoundRun, FoundVisit, Gathered, Study, VisitSummary, gather, missing_places,
 };
 
-/// What is collected, and how.
+/// Inputs and options of a collection.
 #[derive(Clone, Copy)]
 pub struct Collecting<'a> {
     /// Folders of machines, and archives.
     pub sources: &'a [PathBuf],
-    /// Where everything goes.
+    /// Output folder.
     pub out: &'a Path,
-    /// The study whose assignment says who should be there.
+    /// The study with its assignment of participants.
     pub study: Option<&'a Study>,
-    /// New labels by run.
+    /// Replacement labels by run.
     pub labels: &'a BTreeMap<String, String>,
-    /// The keys of the lab.
+    /// Keys of the lab.
     pub keys: LabKeys<'a>,
 }
 
-/// The keys of the lab that collects.
+/// Keys of the lab that collects.
 #[derive(Clone, Copy, Default)]
 pub struct LabKeys<'a> {
-    /// What signs the archives that are written.
+    /// Signs the archives that are written.
     pub own: Option<&'a LabKey>,
-    /// Who should have signed the archives that are read.
+    /// Verifies the signatures of the archives that are read.
     pub public: Option<&'a LabPublicKey>,
-    /// What seals the snapshots of the runs besides the runs.
+    /// Seals the snapshots of the runs.
     pub seal: Option<&'a SealKey>,
 }
 
@@ -44,28 +45,28 @@ impl LabKeys<'_> {
     }
 }
 
-/// What came of it.
+/// The result of a collection.
 #[derive(Debug, Clone)]
 pub struct Collected {
-    /// The tables of all runs that were taken.
+    /// Tables of all collected runs.
     pub tables: StudyTables,
-    /// Runs that were taken: label, seal, where the archive lies.
+    /// Collected runs: label, seal, path of the archive.
     pub runs: Vec<(Option<String>, Seal, PathBuf)>,
-    /// What should be known.
+    /// Warnings for the experimenter.
     pub notes: Vec<CollectNote>,
-    /// How many came, and what became of them.
+    /// Number of runs found, by result.
     pub visits: VisitSummary,
 }
 
-/// Collects a study. Every run is simulated again and sealed into an archive; `progress` is told how many of how many are
-/// done. Archives that are there from before make room: trajectories only grow.
+/// Collects a study: replays every run, verifies it and seals it in an archive. `progress` is called with the number
+/// of finished runs and the total. Replaces archives of earlier collections, because trajectories only grow.
 ///
 /// # Errors
-/// The folder cannot be written.
+/// Returns an error if the output folder cannot be written.
 pub fn collect(what: Collecting<'_>, progress: &mut dyn FnMut(usize, usize)) -> Result<Collected, RunError> {
     let Collecting { sources, out, study, labels, keys } = what;
     std::fs::create_dir_all(out).map_err(|error| RunError::Io { path: out.to_owned(), error })?;
-    // What archives are unpacked into stays hidden, and is gone afterwards.
+    // Unpacked archives go to a hidden folder that is deleted at the end.
     let workshop = Workshop::within(out)?;
     let Gathered { runs, conflicts, mut notes, visits } = gather(sources, workshop.path(), out, keys.public);
     let mut collected = Collected {
@@ -122,7 +123,6 @@ pub fn collect(what: Collecting<'_>, progress: &mut dyn FnMut(usize, usize)) -> 
     Ok(collected)
 }
 
-/// Simulates a run again, seals it, and adds it to the tables.
 fn take(
     run: &FoundRun,
     out: &Path,
@@ -139,7 +139,6 @@ fn take(
     Ok((seal, archive))
 }
 
-/// Seals records that contradict each other, each for itself.
 fn keep_apart(
     conflicts: &BTreeMap<String, Vec<FoundRun>>,
     out: &Path,

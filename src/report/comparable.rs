@@ -1,4 +1,5 @@
-//! Whether a run is ranked among the published results: one rule for the final page, the menu, reports and the laboratory.
+//! Eligibility of a run for the ranking among the published results, for the final page, the menu, reports
+//! and the laboratory.
 
 use super::logbook::Logbook;
 use super::ranking::published;
@@ -14,10 +15,10 @@ pub const PUBLISHED_DAYS: u32 = 500;
 /// Seed of the published runs.
 pub const PUBLISHED_SEED: u64 = 42;
 
-/// Scenarios with the rules by which the published results were made: of any luck, and of the release's own.
+/// Scenarios with the rules of the published results: any seed, and the seed of the release.
 const PUBLISHED_RULES: [&str; 2] = [DEFAULT_SCENARIO, "reference-seed42"];
 
-/// What decides whether a run is ranked among the published results.
+/// Properties that decide whether a run can be ranked among the published results.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RunTerms<'a> {
     /// Last day of the run.
@@ -26,20 +27,20 @@ pub struct RunTerms<'a> {
     pub start_cash: f64,
     /// Scenario.
     pub scenario: &'a str,
-    /// The parameters are, or were for some days, others than those of the shipped scenario of that name.
+    /// The parameters differ, or differed for some days, from those of the bundled scenario of that name.
     pub has_own_parameters: bool,
     /// A language model judges the posts of the player.
     pub judged_by_model: bool,
-    /// It belongs to a lesson.
+    /// The run belongs to a lesson.
     pub is_lesson: bool,
-    /// It goes on from weeks of another run, whose end may be known.
+    /// The run continues weeks of another run, whose end may be known.
     pub is_branch: bool,
-    /// Somebody played it in debug mode, which shows hidden state; a policy sees nothing of it.
+    /// The run was played in debug mode, which shows hidden state. Policies never see hidden state.
     pub showed_hidden_state: bool,
 }
 
 impl<'a> RunTerms<'a> {
-    /// Of an open run.
+    /// Returns the terms of an open run.
     pub fn of_observation(seen: &'a Observation) -> RunTerms<'a> {
         RunTerms {
             days: seen.last_day,
@@ -53,7 +54,7 @@ impl<'a> RunTerms<'a> {
         }
     }
 
-    /// Of a run in a list.
+    /// Returns the terms of a run in a list.
     pub fn of_summary(run: &'a RunSummary) -> RunTerms<'a> {
         RunTerms {
             days: run.days,
@@ -67,7 +68,7 @@ impl<'a> RunTerms<'a> {
         }
     }
 
-    /// Of a run that was read.
+    /// Returns the terms of a run that was read from its record.
     pub fn of_logbook(book: &'a Logbook) -> RunTerms<'a> {
         RunTerms {
             days: book.days,
@@ -81,7 +82,7 @@ impl<'a> RunTerms<'a> {
         }
     }
 
-    /// What keeps the run from being ranked; nothing of a run that is. Another seed does not: other luck is no other game.
+    /// Returns the reasons not to rank the run; empty if it can be ranked. A different seed is not a reason.
     pub fn obstacles(&self) -> Vec<Obstacle> {
         let mut obstacles = Vec::new();
         if self.is_lesson {
@@ -115,26 +116,26 @@ impl<'a> RunTerms<'a> {
 /// A reason not to rank a run among the published ones.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Obstacle {
-    /// It belongs to a lesson.
+    /// The run belongs to a lesson.
     Lesson,
-    /// It has another number of days.
+    /// Different number of days.
     Length(u32),
-    /// It began with other cash, dollars.
+    /// Different starting cash, dollars.
     Start(f64),
-    /// It plays another scenario.
+    /// Different scenario.
     Scenario(String),
     /// Parameters were changed.
     Parameters,
-    /// A language model judges the posts of the player: other readers are another game.
+    /// A language model judges the posts of the player.
     Judge,
-    /// It goes on from weeks of another run: what comes of them may be known.
+    /// The run continues weeks of another run, whose outcome may be known.
     Branch,
-    /// Played in debug mode, which shows hidden state.
+    /// The run was played in debug mode, which shows hidden state.
     Debug,
 }
 
 impl Obstacle {
-    /// The reason in words: `28 days instead of 500`.
+    /// Describes the reason: `28 days instead of 500`.
     pub fn in_words(&self) -> String {
         match self {
             Obstacle::Lesson => "part of a lesson".to_owned(),
@@ -156,13 +157,12 @@ impl Obstacle {
         }
     }
 
-    /// The kind of reason in words, for several runs.
     fn kind(&self) -> &'static str {
         match self {
             Obstacle::Lesson => "part of a lesson",
-            Obstacle::Length(_) => "another length",
-            Obstacle::Start(_) => "another start",
-            Obstacle::Scenario(_) => "another scenario",
+            Obstacle::Length(_) => "different length",
+            Obstacle::Start(_) => "different starting cash",
+            Obstacle::Scenario(_) => "different scenario",
             Obstacle::Parameters => "changed parameters",
             Obstacle::Judge => "posts judged by a language model",
             Obstacle::Branch => "a branch of another run",
@@ -171,12 +171,13 @@ impl Obstacle {
     }
 }
 
-/// Reasons in one line.
+/// Lists reasons in one line.
 pub fn obstacles_in_words(obstacles: &[Obstacle]) -> String {
     obstacles.iter().map(Obstacle::in_words).collect::<Vec<_>>().join(", ")
 }
 
-/// How many runs have obstacles, and which: of one its own, of several their kinds, counted. None where no run has any.
+/// Returns the number of runs with obstacles, and the reasons: those of a single run, or counts by kind.
+/// `None` if no run has any.
 pub fn left_out_in_words(runs: &[Vec<Obstacle>]) -> Option<(usize, String)> {
     let left_out: Vec<&Vec<Obstacle>> = runs.iter().filter(|obstacles| !obstacles.is_empty()).collect();
     match left_out.as_slice() {
@@ -198,7 +199,7 @@ pub fn left_out_in_words(runs: &[Vec<Obstacle>]) -> Option<(usize, String)> {
     }
 }
 
-/// Why runs that are over are not ranked, in a sentence; none where each of them is.
+/// Explains in a sentence why finished runs are not ranked. `None` if all of them are ranked.
 pub fn not_ranked_in_words(runs: &[Vec<Obstacle>]) -> Option<String> {
     left_out_in_words(runs).map(|(count, why)| match count {
         1 => format!("One finished run is not ranked: {why}."),
@@ -265,7 +266,7 @@ mod tests {
         let other = vec![Obstacle::Length(35), Obstacle::Scenario("short".to_owned())];
         assert_eq!(
             not_ranked_in_words(&[short, other]).as_deref(),
-            Some("2 finished runs are not ranked: another length (2), another scenario (1).")
+            Some("2 finished runs are not ranked: different length (2), different scenario (1).")
         );
     }
 }

@@ -1,33 +1,33 @@
-//! The curve explorer in words: what it is drawn from, the curve at some prices, and what leads would do.
+//! Text of the participation curve explorer: its basis, the curve at several prices, and the expected
+//! outcome.
 
 use novamind_base::notation::{cents, percent, price_to_cents};
 use novamind_insight::{CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, Expected, PlanPoint};
 use novamind_session::identifiers::{ByPlan, Plan};
 
-/// Every so many points of the curve is a row.
+/// Interval between the points that become rows.
 const ROW_EVERY: usize = 6;
 
-/// What no quality wins.
 const NOBODY: &str = "–";
 
-/// What the curve is drawn from: `estimates of day 0, ±65%`.
+/// Describes the source of the curve: `estimates of day 0, ±65%`.
 pub fn basis_in_words(basis: &CurveBasis) -> String {
     match basis {
-        CurveBasis::Truth { day } => format!("the truth of day {day}"),
+        CurveBasis::Truth { day } => format!("true values of day {day}"),
         CurveBasis::Estimates { noise, as_of, .. } => {
             format!("estimates of day {as_of}, ±{}", percent(*noise, 0))
         }
     }
 }
 
-/// Names of the columns of [`rows`].
+/// Returns the column names of [`rows`].
 pub fn columns(own: &CurveExplorer) -> Vec<String> {
     let names = ["price", "1 in 10", "half", "9 in 10", "half, at least", "half, at most"];
     let shown = if own.is_truth() { 4 } else { 6 };
     names[..shown].iter().map(|name| (*name).to_owned()).collect()
 }
 
-/// The qualities that shares of the leads ask for at most, at some prices.
+/// Returns the quality that 10%, 50% and 90% of the leads accept, at several prices.
 pub fn rows(own: &CurveExplorer) -> Vec<Vec<String>> {
     let row = |point: &CurvePoint| {
         let (least, most) = point.median_between;
@@ -41,31 +41,34 @@ pub fn rows(own: &CurveExplorer) -> Vec<Vec<String>> {
     own.points.iter().step_by(ROW_EVERY).map(row).collect()
 }
 
-/// What a dash in the rows means, and what is assumed.
+/// Explains the dash in the rows and the assumptions.
 pub fn remarks(own: &CurveExplorer) -> Vec<String> {
     let mut lines = Vec::new();
     if rows(own).iter().flatten().any(|cell| cell == NOBODY) {
-        lines.push(format!("{NOBODY} the price is above the budget of so many that no quality wins them"));
+        lines.push(format!(
+            "{NOBODY} the price is above the budget of too many leads: no quality is sufficient"
+        ));
     }
     if !own.is_truth() {
         lines.push(
-            "studies tell means only: how widely a group spreads and how far its curve rises is assumed alike for all groups"
+            "studies estimate means only; spread and slope of the curve are assumed to be the same for all groups"
                 .to_owned(),
         );
     }
     lines
 }
 
-/// What leads would do: `conversion 31.2% (4.1% to 70.2%), revenue per lead $6.12 ($0.70 to $20.31)`.
+/// Describes the expected result: `conversion 31.2% (4.1% to 70.2%), revenue per lead $6.12 ($0.70 to
+/// $20.31)`.
 pub fn outcome_in_words(outcome: &CurveOutcome) -> String {
     let conversion = with_ends(&outcome.conversion, |value| percent(value, 1));
     match &outcome.revenue_per_lead {
         Some(revenue) => format!("conversion {conversion}, revenue per lead {}", with_ends(revenue, cents)),
-        None => format!("{conversion} ask for an offer; companies negotiate the price"),
+        None => format!("{conversion} ask for an offer; enterprises negotiate the price"),
     }
 }
 
-/// The same in few words: `31% (4% to 70%) · $6.12 ($0.70 to $20.31) a lead`.
+/// Describes the expected result briefly: `31% (4% to 70%) · $6.12 ($0.70 to $20.31) a lead`.
 pub fn outcome_in_few_words(outcome: &CurveOutcome) -> String {
     let conversion = with_ends(&outcome.conversion, |value| percent(value, 0));
     match &outcome.revenue_per_lead {
@@ -74,7 +77,7 @@ pub fn outcome_in_few_words(outcome: &CurveOutcome) -> String {
     }
 }
 
-/// A figure, with its ends where it has some.
+/// Writes a figure, with its range if it has one.
 pub fn with_ends(figure: &Expected, write: impl Fn(f64) -> String) -> String {
     let likely = write(figure.likely);
     match figure.least < figure.most {
@@ -83,13 +86,13 @@ pub fn with_ends(figure: &Expected, write: impl Fn(f64) -> String) -> String {
     }
 }
 
-/// A plan as leads see it: `A $12, quality 0.20, taken by 12.3%`.
+/// Describes a plan as leads see it: `A $12, quality 0.20, chosen by 12.3%`.
 pub fn plan_in_words(plan: Plan, point: &PlanPoint, takers: Option<&ByPlan<f64>>) -> String {
-    let taken = takers.map_or(String::new(), |all| format!(", taken by {}", percent(all[plan], 1)));
+    let taken = takers.map_or(String::new(), |all| format!(", chosen by {}", percent(all[plan], 1)));
     format!("{plan} {}, quality {}{taken}", price_to_cents(point.list), quality(point.quality))
 }
 
-/// A quality; a dash where no quality is enough.
+/// Writes a quality; a dash if no quality is sufficient.
 pub fn quality(value: f64) -> String {
     if value.is_finite() { format!("{value:.2}") } else { NOBODY.to_owned() }
 }

@@ -1,4 +1,4 @@
-//! Calls that offer or end deals, with the names of their companies.
+//! Text for tool calls that make or reject offers to enterprises.
 
 use serde_json::Value;
 
@@ -7,10 +7,9 @@ use novamind_base::notation::cents;
 use novamind_session::CompanyNames;
 use novamind_tools::ToolId;
 
-/// Deals of a call that are told one by one.
 const TOLD: usize = 3;
 
-/// The deals of a call in words; none for other tools, and where the arguments are no deals.
+/// Describes the deals of a call. `None` for other tools and for arguments without deals.
 pub fn deals_in_words(tool: ToolId, arguments: &Value, names: &CompanyNames) -> Option<String> {
     if !matches!(tool, ToolId::SendEnterpriseDeal | ToolId::RejectEnterpriseDeal) {
         return None;
@@ -19,7 +18,7 @@ pub fn deals_in_words(tool: ToolId, arguments: &Value, names: &CompanyNames) -> 
     let told: Option<Vec<String>> = deals.iter().take(TOLD).map(|deal| deal_in_words(deal, names)).collect();
     let mut words = told.filter(|told| !told.is_empty())?.join(" · ");
     if deals.len() > TOLD {
-        words += &format!(" · {} more", count((deals.len() - TOLD) as u32, "company"));
+        words += &format!(" · {} more", count((deals.len() - TOLD) as u32, "enterprise"));
     }
     Some(words)
 }
@@ -60,7 +59,7 @@ mod tests {
         }
         let many: Vec<u32> = (1..=3_569).collect();
         let many = told(ToolId::RejectEnterpriseDeal, json!(many)).expect("words");
-        assert!(many.ends_with(" · 3,566 companies more"), "{many}");
+        assert!(many.ends_with(" · 3,566 enterprises more"), "{many}");
         for none in [json!([]), json!(["x"]), json!([[7, [["B"]]]]), json!([-4])] {
             assert_eq!(told(send, none.clone()), None, "{none}");
         }

@@ -1,4 +1,4 @@
-//! The debrief of a lesson in words, and as a page.
+//! The debrief of a lesson as text and as a page.
 
 use serde_json::Value;
 
@@ -17,13 +17,11 @@ use novamind_record::trajectory::record::Ended;
 use novamind_session::CompanyNames;
 use novamind_tools::ToolId;
 
-/// Most settings of a tool that are named one by one.
 const MOST_SETTINGS: usize = 6;
 
-/// Most calls of a tool that are named one by one.
 const MOST_CALLS: usize = 2;
 
-/// What the part came to, in a sentence.
+/// Summarizes the result of the part in a sentence.
 pub fn headline(own: &Debrief) -> String {
     let last = |cash: &[f64]| money(cash.last().copied().unwrap_or(0.0));
     let day = own.own.len().saturating_sub(1);
@@ -32,14 +30,14 @@ pub fn headline(own: &Debrief) -> String {
         _ => format!("You had {} on day {day}", last(&own.own)),
     };
     let other = |curve: &Option<ReferenceCurve>, name: &str| {
-        curve.as_ref().map(|curve| format!("the {name} play {}", last(&curve.cash_by_day)))
+        curve.as_ref().map(|curve| format!("{name} play {}", last(&curve.cash_by_day)))
     };
     let cash_of = |curve: &Option<ReferenceCurve>| curve.as_ref().map(|curve| last(&curve.cash_by_day));
     let others: Vec<String> = match cash_of(&own.good) {
         Some(cash) if cash_of(&own.bad).as_ref() == Some(&cash) => {
-            vec![format!("the good and the bad play both {cash}")]
+            vec![format!("reference and bad play both {cash}")]
         }
-        _ => [other(&own.good, "good"), other(&own.bad, "bad")].into_iter().flatten().collect(),
+        _ => [other(&own.good, "reference"), other(&own.bad, "bad")].into_iter().flatten().collect(),
     };
     let cash = match others.is_empty() {
         true => format!("{end}."),
@@ -48,13 +46,12 @@ pub fn headline(own: &Debrief) -> String {
     own.judged_by.as_ref().and_then(judged_in_words).map_or(cash.clone(), |judged| format!("{judged} {cash}"))
 }
 
-/// What the figure came to that the part is judged by.
 fn judged_in_words(judged: &JudgedFigure) -> Option<String> {
     let last = |curve: &[(u32, f64)]| curve.last().map(|(_, value)| of_figure(judged.figure, *value));
     let (day, _) = judged.own.last()?;
     let mut said =
         format!("{} on day {day}: yours {}", capitalised(judged.figure.name()), last(&judged.own)?);
-    for (name, curve) in [("good", &judged.good), ("bad", &judged.bad)] {
+    for (name, curve) in [("reference", &judged.good), ("bad", &judged.bad)] {
         if let Some(value) = curve.as_deref().and_then(last) {
             said += &format!(", the {name} play's {value}");
         }
@@ -62,7 +59,6 @@ fn judged_in_words(judged: &JudgedFigure) -> Option<String> {
     Some(said + ".")
 }
 
-/// A value of a figure of weeks.
 fn of_figure(figure: WeekFigure, value: f64) -> String {
     match figure.unit() {
         FigureUnit::Dollars => money(value),
@@ -77,7 +73,7 @@ fn capitalised(text: &str) -> String {
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// The debrief as paragraphs.
+/// Returns the debrief as paragraphs.
 pub fn in_words(own: &Debrief) -> Vec<String> {
     let part = own.part.as_ref().map(|part| format!(" · {part}")).unwrap_or_default();
     let mut lines = vec![format!("{}{part}", own.title), headline(own), String::new()];
@@ -99,13 +95,15 @@ pub fn in_words(own: &Debrief) -> Vec<String> {
     lines
 }
 
-/// Where the own decisions parted from those of the good play, and what that was worth.
+/// Describes the first decisions that differ from the reference play, and their effect.
 pub fn comparison_in_words(own: &Debrief) -> Vec<String> {
     match &own.comparison {
-        DecisionComparison::Same => vec!["You decided as the good play does, week by week.".to_owned()],
+        DecisionComparison::Same => {
+            vec!["You made the same decisions as the reference play, week by week.".to_owned()]
+        }
         DecisionComparison::Nothing => vec!["There was nothing to decide in this part.".to_owned()],
         DecisionComparison::Unknown => {
-            vec!["Your decisions cannot be held against those of the good play in this run.".to_owned()]
+            vec!["Your decisions cannot be compared with the reference play in this run.".to_owned()]
         }
         DecisionComparison::Parted(parting) => {
             let told = |name: &str, play: &Option<ReferenceCurve>| {
@@ -113,11 +111,8 @@ pub fn comparison_in_words(own: &Debrief) -> Vec<String> {
                 text.map(|text| format!("The {name} play: {text}"))
             };
             let mut lines: Vec<String> =
-                [told("good", &own.good), told("bad", &own.bad)].into_iter().flatten().collect();
-            lines.push(format!(
-                "Week {}, day {}, is the first in which you decided otherwise:",
-                parting.week, parting.day
-            ));
+                [told("reference", &own.good), told("bad", &own.bad)].into_iter().flatten().collect();
+            lines.push(format!("Your decisions first differ in week {}, day {}:", parting.week, parting.day));
             let names = own.company_names();
             lines.extend(parting.decisions.iter().map(|one| format!("  {}", decision_in_words(one, &names))));
             lines.push(effect_in_words(parting, own));
@@ -126,13 +121,12 @@ pub fn comparison_in_words(own: &Debrief) -> Vec<String> {
     }
 }
 
-/// What one tool did in both plays.
 fn decision_in_words(decision: &PartedDecision, names: &CompanyNames) -> String {
     let said = match &decision.difference {
         DecisionContrast::Settings { settings } => {
             let one = |setting: &SettingContrast| {
                 format!(
-                    "{} {}, the good play {}",
+                    "{} {}, reference play {}",
                     setting.name,
                     written(&setting.own),
                     written(&setting.good)
@@ -146,7 +140,7 @@ fn decision_in_words(decision: &PartedDecision, names: &CompanyNames) -> String 
         }
         DecisionContrast::Calls { own, good } => {
             let told = |calls| calls_in_words(decision.tool, calls, names);
-            format!("{}; the good play: {}", told(own), told(good))
+            format!("{}; reference play: {}", told(own), told(good))
         }
     };
     format!("{}: {said}", decision.tool.name())
@@ -164,7 +158,6 @@ fn written(value: &Value) -> String {
     }
 }
 
-/// Calls of one tool by their arguments.
 fn calls_in_words(tool: ToolId, calls: &[Value], names: &CompanyNames) -> String {
     let one = |call: &Value| {
         if let Some(words) = deals_in_words(tool, call, names) {
@@ -188,23 +181,23 @@ fn effect_in_words(parting: &FirstDifference, own: &Debrief) -> String {
     let effect = match parting.effect {
         DecisionEffect::Simulated(effect) => effect,
         DecisionEffect::Refused => {
-            return "The calls of the good play are refused in your run, so their effect was not simulated."
+            return "The rules reject the reference play's calls in your run, so their effect was not simulated."
                 .to_owned();
         }
         DecisionEffect::OtherCustomers => {
-            return "Your later letters name companies by number. After other decisions other companies come under \
-                    those numbers, so the effect was not simulated."
+            return "Your later messages name enterprises by number. After other decisions these numbers belong to \
+                    different enterprises, so the effect was not simulated."
                 .to_owned();
         }
     };
     let judged_by = own.judged_by.as_ref();
     let figure = judged_by.zip(effect.judged).map(|(judged, (own, with))| {
         let (own, with) = (of_figure(judged.figure, own), of_figure(judged.figure, with));
-        format!("{} of {with} instead of {own}, and ", judged.figure.name())
+        format!("{} of {with} rather than {own}, and ", judged.figure.name())
     });
     let told = format!(
-        "Simulated again with these decisions of the good play in week {}, and everything else as you decided it: {}\
-         cash of {} on day {} instead of {} ({}).",
+        "Re-run with these decisions of the reference play in week {} and your other decisions: {}\
+         cash of {} on day {} rather than {} ({}).",
         parting.week,
         figure.unwrap_or_default(),
         money(effect.with),
@@ -215,7 +208,7 @@ fn effect_in_words(parting: &FirstDifference, own: &Debrief) -> String {
     told + &alone_or_together(effect, own)
 }
 
-/// What is to be said where the first other decisions of the good play alone would have made it worse.
+/// Explains the result if the first different decisions of the reference play alone make it worse.
 fn alone_or_together(effect: PartingEffect, own: &Debrief) -> String {
     let (mine, with) = effect.judged.unwrap_or((effect.own, effect.with));
     if with >= mine {
@@ -223,7 +216,7 @@ fn alone_or_together(effect: PartingEffect, own: &Debrief) -> String {
     }
     let is_missed = |step: &DebriefStep| step.goals.iter().any(|goal| goal.met == Some(false));
     if effect.judged.is_none() && own.steps.iter().any(is_missed) {
-        return " Cash alone is no measure of this part: its goals say what it asks for.".to_owned();
+        return " Cash alone does not measure this part; see its goals.".to_owned();
     }
     let good = match (&own.judged_by, effect.judged) {
         (Some(judged), Some(_)) => {
@@ -239,10 +232,12 @@ fn alone_or_together(effect: PartingEffect, own: &Debrief) -> String {
     };
     match reached > mine {
         true => format!(
-            " Alone they would have cost you; with all that the good play decides later they come to {words}."
+            " Copying them alone would have cost you; with its later decisions, the reference play reaches {words}."
         ),
         false => {
-            format!(" They would have cost you: you came out ahead of the good play, which comes to {words}.")
+            format!(
+                " Copying them would have cost you: you did better than the reference play, which reaches {words}."
+            )
         }
     }
 }
@@ -254,20 +249,20 @@ fn step_in_words(step: &DebriefStep) -> Vec<String> {
     lines
 }
 
-/// Tries and hints of a step.
 fn effort(step: &DebriefStep) -> String {
     let (used, all) = step.hints;
     let tries = if step.tries == 1 { "1 try".to_owned() } else { format!("{} tries", step.tries) };
     format!("{tries}, {used} of {}", count(all as u32, "hint"))
 }
 
-/// Whose figures the text of a debrief tells.
 fn figures_in_text(own: &Debrief) -> String {
     let (from, to) = (MEASURED_SEEDS.start(), MEASURED_SEEDS.end());
-    format!("Amounts in this text are means over seeds {from} to {to}; your company had seed {}.", own.seed)
+    format!(
+        "Amounts in this text are averages over seeds {from} to {to}; your company has seed {}.",
+        own.seed
+    )
 }
 
-/// The paragraphs of a text in Markdown, without its marks.
 fn paragraphs(text: &str) -> Vec<String> {
     let plain = |paragraph: &str| {
         let words: Vec<&str> = paragraph.split_whitespace().collect();
@@ -276,7 +271,7 @@ fn paragraphs(text: &str) -> Vec<String> {
     text.split("\n\n").map(plain).filter(|paragraph| !paragraph.is_empty()).collect()
 }
 
-/// Terms of the glossary that a text in Markdown emphasises, each once.
+/// Returns the glossary terms that a Markdown text emphasizes, each once.
 pub fn named_terms(text: &str) -> Vec<&'static Term> {
     let mut found: Vec<&'static Term> = Vec::new();
     let flat = text.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -294,16 +289,15 @@ pub fn named_terms(text: &str) -> Vec<&'static Term> {
     found
 }
 
-/// The page of a debrief.
 pub(super) fn page_of(own: &Debrief) -> Page {
     let mut blocks = vec![Block::Facts(facts(own))];
     if let Some(judged) = &own.judged_by {
-        blocks.push(Block::Heading("What was to be reached"));
+        blocks.push(Block::Heading("Target"));
         blocks.push(Block::Chart(judged_chart(judged, &headline(own))));
     }
     blocks.push(Block::Heading("Cash"));
     blocks.push(Block::Chart(cash(own)));
-    blocks.push(Block::Heading("Beside the good play"));
+    blocks.push(Block::Heading("Comparison with the reference play"));
     blocks.extend(comparison_in_words(own).into_iter().map(|line| Block::Text(line.trim().to_owned())));
     blocks.extend(guesses(own));
     blocks.extend(goals(own));
@@ -311,7 +305,7 @@ pub(super) fn page_of(own: &Debrief) -> Page {
         blocks.push(Block::Heading("Pitfalls"));
         let row = |(day, say): &(u32, String)| vec![day.to_string(), say.clone()];
         blocks.push(Block::Table(Table {
-            columns: vec![("day", true), ("what was said", false)],
+            columns: vec![("day", true), ("explanation", false)],
             rows: own.pitfalls.iter().map(row).collect(),
         }));
     }
@@ -322,7 +316,7 @@ pub(super) fn page_of(own: &Debrief) -> Page {
         let row = |term: &&Term| vec![term.title.clone(), term.text.clone()];
         let rows: Vec<Vec<String>> = named_terms(text).iter().map(row).collect();
         if !rows.is_empty() {
-            blocks.push(Block::Table(Table { columns: vec![("term", false), ("what it is", false)], rows }));
+            blocks.push(Block::Table(Table { columns: vec![("term", false), ("meaning", false)], rows }));
         }
     }
     let mut tags = vec![format!("run {}", own.run), format!("seed {}", own.seed)];
@@ -334,7 +328,7 @@ pub(super) fn page_of(own: &Debrief) -> Page {
         tags,
         blocks,
         foot: format!(
-            "Recorded by NovaMind console {}. The good and the bad play were simulated on the seed of the run.",
+            "Recorded by NovaMind console {}. The reference play and the bad play were simulated with the seed of the run.",
             env!("CARGO_PKG_VERSION")
         ),
     }
@@ -344,7 +338,7 @@ fn facts(own: &Debrief) -> Vec<Fact> {
     let last = |cash: &[f64]| money(cash.last().copied().unwrap_or(0.0));
     let day = format!("day {}", own.own.len().saturating_sub(1));
     let mut facts = vec![Fact::new("You", last(&own.own), day)];
-    for (name, curve) in [("Good play", &own.good), ("Bad play", &own.bad)] {
+    for (name, curve) in [("Reference play", &own.good), ("Bad play", &own.bad)] {
         let told = |curve: &ReferenceCurve| {
             Fact::new(name, last(&curve.cash_by_day), curve.text.clone().unwrap_or_default())
         };
@@ -358,7 +352,7 @@ fn cash(own: &Debrief) -> Chart {
         name: name.to_owned(),
         points: cash.iter().enumerate().map(|(day, cash)| (day as f64, *cash)).collect(),
     };
-    let references = [("good play", &own.good), ("bad play", &own.bad)];
+    let references = [("reference play", &own.good), ("bad play", &own.bad)];
     let others =
         references.into_iter().filter_map(|(name, own)| Some(curve(name, &own.as_ref()?.cash_by_day)));
     Chart {
@@ -374,13 +368,12 @@ fn cash(own: &Debrief) -> Chart {
     }
 }
 
-/// The figure that the part is judged by, week by week.
 fn judged_chart(judged: &JudgedFigure, summary: &str) -> Chart {
     let curve = |name: &str, values: &[(u32, f64)]| Curve {
         name: name.to_owned(),
         points: values.iter().map(|(day, value)| (f64::from(*day), *value)).collect(),
     };
-    let references = [("good play", &judged.good), ("bad play", &judged.bad)];
+    let references = [("reference play", &judged.good), ("bad play", &judged.bad)];
     let others = references.into_iter().filter_map(|(name, own)| Some(curve(name, own.as_ref()?)));
     Chart {
         title: format!("{} by week", capitalised(judged.figure.name())),
@@ -440,7 +433,7 @@ fn goals(own: &Debrief) -> Vec<Block> {
         ("step", false),
         ("goal", false),
         ("value", true),
-        ("bound", true),
+        ("target", true),
         ("", false),
         ("tries and hints", false),
     ];

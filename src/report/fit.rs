@@ -1,5 +1,5 @@
-//! Fit: what a group is known to want beside what the plans offer it. Studies give the means of a group within an error,
-//! so a figure of ours lies below, inside or above the range of the truth; what is missing is said as far as that goes.
+//! Fit: a group's estimated requirements compared with the plans. Estimates are ranges around a study's figure, so a
+//! plan's figure lies below, in or above the range. Deficits are stated only where the whole range shows them.
 
 use serde::Serialize;
 
@@ -8,36 +8,36 @@ use novamind_base::notation::{cents, dollars, percent, price_to_cents};
 use novamind_session::identifiers::{ByGroup, ByPlan, Group, Plan};
 use novamind_session::{DeliveredQuality, Estimates, GroupWeek, Session, Settings, truth_behind};
 
-/// Weeks that are recent.
+/// Number of weeks in `recent`.
 const RECENT: usize = 4;
 
-/// Least and greatest truth behind an estimate.
+/// Smallest and largest true value that an estimate allows.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct TruthRange {
-    /// Least.
+    /// Smallest.
     pub least: f64,
-    /// Greatest.
+    /// Largest.
     pub most: f64,
 }
 
-/// Where a figure lies beside the range of a truth.
+/// Position of a figure relative to the range of a true value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Beside {
-    /// Below all of it.
+    /// Below the range.
     Below,
-    /// Inside: the truth can be on either side.
+    /// In the range: the true value can be on either side.
     Inside,
-    /// Above all of it.
+    /// Above the range.
     Above,
 }
 
 impl TruthRange {
-    /// Behind an estimate that is off by at most a share.
+    /// Returns the range behind an estimate with a relative error of at most `share`.
     pub fn behind(estimate: f64, share: f64) -> TruthRange {
         truth_behind(estimate, share).into()
     }
 
-    /// Where a figure lies; at an end it lies inside.
+    /// Compares a figure with the range; both ends count as inside.
     pub fn beside(&self, figure: f64) -> Beside {
         match figure {
             figure if figure < self.least => Beside::Below,
@@ -46,17 +46,17 @@ impl TruthRange {
         }
     }
 
-    /// As a quality: `0.181 to 0.858`.
+    /// Formats a range of qualities: `0.181 to 0.858`.
     pub fn quality(&self) -> String {
         range(self.least, self.most, 3)
     }
 
-    /// As dollars: `$18 to $87`.
+    /// Formats a range of dollars: `$18 to $87`.
     pub fn money(&self) -> String {
         format!("${}", range(self.least, self.most, 0).replace(" to ", " to $"))
     }
 
-    /// As whole units, or as dollars whose unit is in the label: `180 to 841`.
+    /// Formats whole units, or dollars if the label has the unit: `180 to 841`.
     pub fn units(&self) -> String {
         range(self.least, self.most, 0)
     }
@@ -68,22 +68,22 @@ impl From<(f64, f64)> for TruthRange {
     }
 }
 
-/// What stands between a group and a plan.
+/// An aspect in which a group compares a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Concern {
-    /// The list price beside the budget.
+    /// List price compared with the budget.
     Price,
-    /// Delivered quality beside the floor.
+    /// Delivered quality compared with the required quality.
     Quality,
-    /// The quota beside the use.
+    /// Quota compared with usage.
     Quota,
 }
 
 impl Concern {
-    /// All of them, in the order in which they are told.
+    /// All aspects, in the order of display.
     pub const ALL: [Concern; 3] = [Concern::Price, Concern::Quality, Concern::Quota];
 
-    /// Word for it.
+    /// Returns the word for the aspect.
     pub fn id(self) -> &'static str {
         match self {
             Concern::Price => "price",
@@ -93,65 +93,65 @@ impl Concern {
     }
 }
 
-/// A plan as a group meets it.
+/// A plan as a group sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanFit {
     /// Plan.
     pub plan: Plan,
-    /// List price, dollars a month; 0 while it is not on sale.
+    /// List price, dollars a month; 0 if it is not on sale.
     pub list: f64,
-    /// What a lead compares with its budget: list price less the promotion for leads that every channel brings. Companies
-    /// negotiate theirs.
+    /// List price less the promotion for leads of all channels, which a lead compares with its budget.
+    /// Enterprises negotiate their price.
     pub price: f64,
-    /// What a subscriber is billed: list price less the promotion in force.
+    /// List price less the promotion in force, which a subscriber is billed.
     pub billed: f64,
     /// Delivered quality.
     pub quality: f64,
-    /// Units a day and account.
+    /// Quota, units a day and account.
     pub quota: f64,
 }
 
-/// How leads of a group fared in some weeks.
+/// Leads of a group and their outcome over some weeks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LeadFlow {
-    /// Customers who came.
+    /// All leads.
     pub leads: u32,
-    /// Those who came through channels.
+    /// Leads through channels.
     pub paid: u32,
-    /// Those who came by word of mouth.
+    /// Leads by word of mouth.
     pub word_of_mouth: u32,
-    /// Individuals who signed up, and companies whose first deal was accepted.
+    /// Individuals who signed up, and enterprises that accepted their first deal.
     pub signed: u32,
 }
 
-/// A known group beside the plans.
+/// Estimates of a group compared with the plans.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
     /// Group.
     pub group: Group,
-    /// Level of knowledge.
+    /// Study level.
     pub level: u8,
     /// Largest relative error of its estimates.
     pub noise: f64,
-    /// Day that floor and budget are of.
+    /// Day of the estimates of required quality and budget.
     pub as_of: u32,
-    /// Days since.
+    /// Days since `as_of`.
     pub age: u32,
-    /// Mean floor of the group: the least quality that is accepted, before it rises with the price.
+    /// Mean required quality of the group, before it rises with the price.
     pub floor: TruthRange,
-    /// Mean budget, dollars a month, of companies a seat.
+    /// Mean budget, dollars a month; for enterprises, per seat.
     pub budget: TruthRange,
-    /// Mean use of a customer, units a day; of companies that of the smallest.
+    /// Mean usage of a customer, units a day; for enterprises, of the smallest.
     pub usage: TruthRange,
     /// The plans.
     pub plans: ByPlan<PlanFit>,
-    /// The last week; none before the first.
+    /// The last week; `None` before the first.
     pub last_week: Option<LeadFlow>,
     /// The last four weeks.
     pub recent: LeadFlow,
 }
 
-/// Every known group, in their fixed order.
+/// Returns the fit of every known group, in their fixed order.
 pub fn fits(session: &Session) -> Vec<Fit> {
     let (quality, weeks) = (session.company().delivered_quality(), session.company().group_weeks());
     let delivered = |group: Group| quality.iter().find(|own| own.group == group);
@@ -194,7 +194,7 @@ fn plan_fit(group: Group, plan: Plan, quality: f64, settings: &Settings) -> Plan
         plan,
         list,
         price: less(leads),
-        // No customer has the number 0: what single ones have is left out.
+        // No customer has the number 0, so settings of individual customers do not apply.
         billed: less(settings.promotion.sum(0, group, plan)),
         quality,
         quota: settings.core.quotas[plan].units(),
@@ -220,12 +220,12 @@ impl LeadFlow {
         }
     }
 
-    /// Of the leads, those who signed; none without leads.
+    /// Returns signups divided by leads; `None` without leads.
     pub fn conversion(&self) -> Option<f64> {
         (self.leads > 0).then(|| f64::from(self.signed) / f64::from(self.leads))
     }
 
-    /// In words: `120 leads (80 paid, 40 by word of mouth), 12 signed (10.0%)`.
+    /// Describes the leads: `120 leads (80 paid, 40 by word of mouth), 12 signed (10.0%)`.
     pub fn in_words(&self) -> String {
         if self.leads == 0 {
             let signed = if self.signed == 0 { String::new() } else { format!(", {} signed", self.signed) };
@@ -244,7 +244,7 @@ impl LeadFlow {
 }
 
 impl Fit {
-    /// Where a plan stands in one concern; none where the group does not compare it: companies negotiate the price.
+    /// Compares a plan in one aspect. Returns `None` for the price of enterprises, which negotiate it.
     pub fn beside(&self, plan: Plan, concern: Concern) -> Option<Beside> {
         let own = &self.plans[plan];
         match concern {
@@ -255,7 +255,7 @@ impl Fit {
         }
     }
 
-    /// How much is missing at least, whatever the truth is inside its range; none where nothing is certain.
+    /// Returns the smallest deficit that the whole range allows; `None` if no deficit is certain.
     pub fn missing(&self, plan: Plan, concern: Concern) -> Option<f64> {
         let own = &self.plans[plan];
         match (concern, self.beside(plan, concern)?) {
@@ -266,7 +266,7 @@ impl Fit {
         }
     }
 
-    /// What a plan lacks in words; a concern inside its range is named as open.
+    /// Describes what a plan lacks, and the aspects that are uncertain.
     pub fn lacks(&self, plan: Plan) -> String {
         let own = &self.plans[plan];
         if own.list <= 0.0 {
@@ -276,17 +276,20 @@ impl Fit {
         let missing: Vec<(Concern, f64)> = Concern::ALL.iter().filter_map(certain).collect();
         let inside = |concern: &&Concern| self.beside(plan, **concern) == Some(Beside::Inside);
         let open: Vec<&str> = Concern::ALL.iter().filter(inside).map(|concern| concern.id()).collect();
-        let open =
-            if open.is_empty() { String::new() } else { format!("inside the range: {}", open.join(", ")) };
+        let open = if open.is_empty() {
+            String::new()
+        } else {
+            format!("may not suit all customers: {}", open.join(", "))
+        };
         match (missing.is_empty(), open.is_empty()) {
-            (true, true) => "lacks nothing".to_owned(),
+            (true, true) => "meets the estimated needs".to_owned(),
             (true, false) => open,
             (false, true) => lacks_in_words(&missing),
             (false, false) => format!("{}; {open}", lacks_in_words(&missing)),
         }
     }
 
-    /// The day its figures are of, and their age: `day 94 (12 days ago)`.
+    /// Describes the day of the estimates and their age: `day 94 (12 days ago)`.
     pub fn studied(&self) -> String {
         let age = match self.age {
             0 => "today".to_owned(),
@@ -296,19 +299,19 @@ impl Fit {
         format!("day {} ({age})", self.as_of)
     }
 
-    /// The whole of it in lines.
+    /// Returns the full comparison as lines of text.
     pub fn lines(&self) -> Vec<String> {
         let company = self.group.is_enterprise();
         let error = percent(self.noise, 0);
         let mut lines = vec![
             format!(
-                "{}: level {} (±{error}), floor and budget as of {}",
+                "{}: study level {} (±{error}), required quality and budget as of {}",
                 self.group,
                 self.level,
                 self.studied()
             ),
             format!(
-                "  quality  floor {}; {}",
+                "  quality  required {}; {}",
                 self.floor.quality(),
                 self.each(|own| format!("{:.4}", own.quality))
             ),
@@ -319,9 +322,9 @@ impl Fit {
                 self.each(price_in_words)
             ),
             format!(
-                "  quota    use {} units a day{}; {}",
+                "  quota    usage {} units a day{}; {}",
                 self.usage.units(),
-                if company { " of the smallest company" } else { "" },
+                if company { " of the smallest enterprise" } else { "" },
                 self.each(|own| whole(own.quota))
             ),
         ];
@@ -343,7 +346,6 @@ impl Fit {
     }
 }
 
-/// A price is too high; quality and quota are lacking.
 fn lacks_in_words(missing: &[(Concern, f64)]) -> String {
     let (price, lacks): (Vec<_>, Vec<_>) =
         missing.iter().copied().partition(|(concern, _)| *concern == Concern::Price);
@@ -366,7 +368,6 @@ fn lack_in_words((concern, amount): (Concern, f64)) -> String {
     }
 }
 
-/// The list price, and what promotions leave of it.
 fn price_in_words(own: &PlanFit) -> String {
     let list = price_to_cents(own.list);
     let mut less = Vec::new();
@@ -462,11 +463,14 @@ mod tests {
         assert!(fit.lacks(Plan::A).contains("quota (at least "), "{}", fit.lacks(Plan::A));
         assert!(fit.lacks(Plan::C).contains("price too high (by at least $"), "{}", fit.lacks(Plan::C));
         let enterprise = all.iter().find(|fit| fit.group.is_enterprise()).expect("E1");
-        assert_eq!(enterprise.beside(Plan::C, Concern::Price), None, "companies negotiate");
+        assert_eq!(enterprise.beside(Plan::C, Concern::Price), None, "enterprises negotiate");
         let text = fit.lines().join("\n");
-        for words in
-            ["floor and budget as of day 0 (today)", "budget $", "$12 ($7 for leads)", "no week has run"]
-        {
+        for words in [
+            "required quality and budget as of day 0 (today)",
+            "budget $",
+            "$12 ($7 for leads)",
+            "no week has run",
+        ] {
             assert!(text.contains(words), "{words} in\n{text}");
         }
     }
@@ -483,7 +487,7 @@ mod tests {
             assert_eq!((last.quality, last.floor), (quality, Some(own.range(own.floor))), "{}", own.group);
         }
         let s1 = estimates[0].group;
-        assert!(weeks[0][s1].quality != weeks[4][s1].quality, "development moves it");
+        assert!(weeks[0][s1].quality != weeks[4][s1].quality, "development changes it");
         let unknown = Group::all().find(|group| estimates.iter().all(|own| own.group != *group));
         assert_eq!(weeks[4][unknown.expect("unknown groups")].floor, None);
     }

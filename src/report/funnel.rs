@@ -1,36 +1,36 @@
-//! The way of companies to a deal, by group: who came, who found a plan good enough to ask for an offer, who signed.
+//! Enterprises by group and stage: arrived, requested an offer, signed.
 
 use super::fit::{Beside, TruthRange};
 use super::words::{count, whole};
 use novamind_session::identifiers::{ByGroup, Group, Plan};
 use novamind_session::{DeliveredQuality, Estimates, GroupWeek, Session};
 
-/// A group of companies over the whole run.
+/// Enterprises of a group over the whole run, by stage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Funnel {
     /// Group.
     pub group: Group,
-    /// Companies that came.
+    /// Enterprises that arrived.
     pub came: u32,
-    /// Those that asked for an offer; the others found no plan good enough at any price.
+    /// Enterprises that requested an offer. The others found no plan with sufficient quality.
     pub asked: u32,
-    /// Those that signed.
+    /// Enterprises that signed.
     pub signed: u32,
-    /// Companies that found no plan good enough in the last four weeks.
+    /// Enterprises that found no sufficient plan in the last four weeks.
     pub turned_away_lately: u32,
-    /// The plan that delivers most to the group, and how much.
+    /// The plan that delivers the highest quality to the group, and that quality.
     pub best: Option<(Plan, f64)>,
     /// Its quota, units a day.
     pub quota: f64,
-    /// What the smallest company would use, units a day.
+    /// Usage of the smallest enterprise, units a day.
     pub usage: TruthRange,
-    /// Mean floor of the group.
+    /// Mean required quality of the group.
     pub floor: TruthRange,
-    /// Day that the floor is of.
+    /// Day of the estimate of required quality.
     pub as_of: u32,
 }
 
-/// Every known group of companies, in their fixed order.
+/// Returns the funnel of every known group of enterprises, in their fixed order.
 pub fn funnels(session: &Session) -> Vec<Funnel> {
     let (estimates, quality) = (session.company().estimates(), session.company().delivered_quality());
     let known = estimates.iter().filter(|own| own.group.is_enterprise());
@@ -72,28 +72,30 @@ fn funnel(
 }
 
 impl Funnel {
-    /// Companies that found no plan good enough at any price.
+    /// Returns the number of enterprises that found no plan with sufficient quality.
     pub fn turned_away(&self) -> u32 {
         self.came.saturating_sub(self.asked)
     }
 
-    /// The funnel in one line; with what they compared where companies turned away lately.
+    /// Describes the funnel in one line. Adds the comparison if enterprises turned away in the last four
+    /// weeks.
     pub fn in_words(&self) -> String {
         let mut text = format!(
-            "{}: {} came, {} found no plan good enough, {} asked, {} signed",
+            "{}: {} arrived, {} found no plan good enough, {} requested an offer, {} signed",
             self.group,
-            count(self.came, "company"),
+            count(self.came, "enterprise"),
             whole(f64::from(self.turned_away())),
             whole(f64::from(self.asked)),
             whole(f64::from(self.signed))
         );
         if let Some((plan, delivered)) = self.best.filter(|_| self.turned_away_lately > 0) {
             let (floor, day) = (self.floor.quality(), self.as_of);
-            text +=
-                &format!("; {plan} delivers {delivered:.4}, their mean floor is {floor} (as of day {day})");
+            text += &format!(
+                "; {plan} delivers {delivered:.4}, their mean required quality is {floor} (as of day {day})"
+            );
             if self.usage.beside(self.quota) != Beside::Above {
                 text += &format!(
-                    ", and its quota of {} stands against {} units a day of the smallest companies",
+                    "; its quota is {}, the smallest enterprises need {} units a day",
                     whole(self.quota),
                     self.usage.units()
                 );
@@ -167,6 +169,8 @@ mod tests {
         let away = all.iter().find(|own| own.turned_away() > 0).expect("some");
         assert!(away.in_words().contains("found no plan good enough"), "{}", away.in_words());
         let lately = all.iter().find(|own| own.turned_away_lately > 0).expect("some, lately");
-        assert!(lately.in_words().contains(" delivers ") && lately.in_words().contains("floor is "));
+        assert!(
+            lately.in_words().contains(" delivers ") && lately.in_words().contains("required quality is ")
+        );
     }
 }

@@ -1,23 +1,23 @@
-//! The days of a run worth remembering.
+//! Notable days of a run.
 
 use super::words::{count, money, whole};
 use novamind_base::notation::signed_dollars;
 use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::Ended;
 
-/// A day worth remembering.
+/// A notable day.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Highlight {
     /// Day.
     pub day: u32,
-    /// What it was.
+    /// Description.
     pub text: String,
 }
 
-/// Outages that are told one by one; further ones are counted.
+/// Number of outages that are listed; further ones are counted.
 const OUTAGES_TOLD: usize = 3;
 
-/// The highlights of a run in the order of their days.
+/// Returns the highlights of a run by day.
 pub fn highlights(
     weeks: &[WeekFigures],
     cash_by_day: &[f64],
@@ -53,7 +53,7 @@ fn firsts(weeks: &[WeekFigures], add: &mut impl FnMut(u32, String)) {
     }
     if let Some(week) = first(|week| week.enterprise_seats > 0) {
         let seats = count(week.enterprise_seats, "seat");
-        add(week.day, format!("first company signed that week: {seats}"));
+        add(week.day, format!("first enterprise signed that week: {seats}"));
     }
     if let Some(week) = first(|week| week.cash_change > 0.0) {
         add(week.day, format!("first profitable week: {}", signed_dollars(week.cash_change)));
@@ -65,7 +65,7 @@ fn extremes(weeks: &[WeekFigures], cash_by_day: &[f64], add: &mut impl FnMut(u32
     if weeks.len() >= 3 {
         let by_change =
             |left: &&WeekFigures, right: &&WeekFigures| left.cash_change.total_cmp(&right.cash_change);
-        // A week that the end has cut short lost less than a whole one: that does not make it the best.
+        // A week shortened by the end of the run lost less than a full one, so it does not count as the best.
         let whole = weeks.iter().map(|week| week.days_run).max();
         let complete = weeks.iter().filter(|week| Some(week.days_run) == whole);
         if let Some(best) = complete.max_by(by_change) {
@@ -89,18 +89,18 @@ fn extremes(weeks: &[WeekFigures], cash_by_day: &[f64], add: &mut impl FnMut(u32
     }
 }
 
-/// The week at whose end a figure was greatest; of equal ones the first: that is when it was reached.
+/// Returns the first week at whose end a figure was highest.
 pub fn peak_week(weeks: &[WeekFigures], figure: fn(&WeekFigures) -> u32) -> Option<&WeekFigures> {
     weeks.iter().rev().max_by_key(|week| figure(week)).filter(|week| figure(week) > 0)
 }
 
-/// The first day with the most cash, and the cash, dollars.
+/// Returns the first day with the highest cash, and the cash in dollars.
 pub fn highest_cash(cash_by_day: &[f64]) -> Option<(u32, f64)> {
     let days = cash_by_day.iter().enumerate().rev();
     days.max_by(|left, right| left.1.total_cmp(right.1)).map(|(day, cash)| (day as u32, *cash))
 }
 
-/// The first day with the least cash, and the cash, dollars.
+/// Returns the first day with the lowest cash, and the cash in dollars.
 pub fn lowest_cash(cash_by_day: &[f64]) -> Option<(u32, f64)> {
     let days = cash_by_day.iter().enumerate();
     days.min_by(|left, right| left.1.total_cmp(right.1)).map(|(day, cash)| (day as u32, *cash))
@@ -139,7 +139,7 @@ mod tests {
                 "14 first subscribers: 30 that week",
                 "14 first profitable week: +$20",
                 "14 peak subscribers: 30",
-                "21 first company signed that week: 12 seats",
+                "21 first enterprise signed that week: 12 seats",
                 "21 best week for cash: +$90",
                 "21 peak enterprise seats: 12",
                 "21 peak cash: $160",
@@ -156,7 +156,7 @@ mod tests {
         let cut_short = WeekFigures { days_run: 2, ..week(23, 0, 0, -10.0) };
         let weeks = [week(7, 0, 0, -50.0), week(14, 0, 0, -40.0), week(21, 0, 0, -60.0), cut_short];
         let told = highlights(&weeks, &[100.0; 24], &[], Some(Ended::Bankruptcy));
-        let best = told.iter().find(|one| one.text.contains("best week")).expect("it is told");
+        let best = told.iter().find(|one| one.text.contains("best week")).expect("a best week");
         assert_eq!((best.day, best.text.as_str()), (14, "best week for cash: -$40"));
     }
 }

@@ -1,13 +1,12 @@
-//! A page as one HTML file: no script, no other file, light and dark as the reader's system has it.
+//! Writes a page as one self-contained HTML file without scripts. Light or dark follows the reader's system.
 
 use super::page::{Bar, Block, Fact, Page, Table};
 use super::svg;
 use novamind_base::notation::escaped_html;
 
-/// The style of the page.
 pub(super) const STYLE: &str = include_str!("../../assets/report.css");
 
-/// The page as HTML.
+/// Returns the page as HTML.
 pub fn write(page: &Page) -> String {
     let tags: String = page.tags.iter().map(|tag| format!("<li>{}</li>", escaped_html(tag))).collect();
     let mut body = String::new();
@@ -40,14 +39,11 @@ pub fn write(page: &Page) -> String {
     )
 }
 
-/// Parts that are shown unfolded; more of them are first seen by their titles.
+/// Number of sections that start expanded; with more of them, all start collapsed.
 const MOST_UNFOLDED: usize = 12;
 
-/// What the writing of a block depends on.
 struct Shape {
-    /// Charts so far.
     charts: usize,
-    /// What can be folded is shown.
     unfolded: bool,
 }
 
@@ -140,7 +136,6 @@ mod tests {
     use super::*;
     use crate::{Story, as_html, as_markdown, test_kit};
 
-    /// Names of the elements that are open when they should not be, or closed without having been open.
     fn check(html: &str) {
         let mut open: Vec<&str> = Vec::new();
         let mut rest = html.strip_prefix("<!DOCTYPE html>").expect("a document type");

@@ -1,5 +1,5 @@
-//! What get_group_insights and get_market_overview answer, as people are shown it: every estimate as the range of the
-//! truth behind it, with the day it is of. Programs get the answers as they are.
+//! Answers of get_group_insights and get_market_overview for display: each estimate as a range of possible true
+//! values, with its day. Programs receive the unchanged answers.
 
 use serde_json::{Map, Value, json};
 
@@ -7,10 +7,9 @@ use super::fit::Fit;
 use super::words::range;
 use novamind_session::truth_behind;
 
-/// Fields of the insights that hold estimates.
 const ESTIMATED: [&str; 3] = ["estimates", "network_influence", "reputation_influence"];
 
-/// The answer about a group with ranges in place of estimates, and the day they are of.
+/// Returns the answer about a group with ranges in place of estimates, and their day.
 pub fn insights_as_ranges(answer: &Value, fit: &Fit) -> Value {
     let Value::Object(fields) = answer else { return answer.clone() };
     let mut shown = Map::new();
@@ -24,7 +23,7 @@ pub fn insights_as_ranges(answer: &Value, fit: &Fit) -> Value {
     Value::Object(shown)
 }
 
-/// The overview of the market with the day that the figures of each group are of.
+/// Returns the market overview with the day of each group's estimates.
 pub fn overview_with_ages(answer: &Value, fits: &[Fit]) -> Value {
     let mut shown = answer.clone();
     let groups = shown.get_mut("known_groups").and_then(Value::as_array_mut);
@@ -47,7 +46,7 @@ fn ranges(value: &Value, noise: f64) -> Value {
     }
 }
 
-/// The range with the decimals that its least end needs for two digits.
+/// Formats the range with enough decimals for two digits of its lower end.
 fn written(estimate: f64, noise: f64) -> String {
     let (least, most) = truth_behind(estimate, noise);
     let decimals = match least.abs() {

@@ -1,29 +1,30 @@
-//! What a lead costs by channel and group: the last four weeks beside the cheapest four weeks before them.
+//! Cost per lead by channel and group: the last four weeks compared with the cheapest four weeks before them.
 
 use novamind_session::identifiers::{ByGroup, Channel, Group};
 use novamind_session::{GroupWeek, PaidLeads};
 
-/// Weeks that are looked at together: one of them alone brings too few leads to compare.
+/// Number of weeks that are combined. A single week has too few leads to compare.
 pub const SPELL: usize = 4;
-/// Leads of a spell from which on its cost per lead is compared.
+/// Minimum number of leads in a period for its cost per lead to be compared.
 pub const ENOUGH: f64 = 20.0;
-/// How many times the cheapest cost per lead it must have become to be a rise.
+/// Minimum ratio to the lowest cost per lead that counts as a rise.
 pub const RISE: f64 = 2.0;
 
-/// Some weeks of advertising of a group through a channel.
+/// Consecutive weeks of advertising of a channel for a group.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AdSpell {
     /// First and last week.
     pub weeks: (u32, u32),
-    /// Leads.
+    /// Number of leads.
     pub leads: u32,
-    /// Dollars.
+    /// Spending, dollars.
     pub spend: f64,
-    /// Individuals among them who were billed; none of companies, whose bills begin weeks after they came.
+    /// Individuals among them who were billed. `None` for enterprises, which are billed weeks after they
+    /// arrive.
     pub billed: Option<u32>,
 }
 
-/// A channel and a group, advertised in the last four weeks.
+/// Costs of a channel and group that were advertised in the last four weeks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PairCost {
     /// Channel.
@@ -32,7 +33,8 @@ pub struct PairCost {
     pub group: Group,
     /// The last four weeks.
     pub recent: AdSpell,
-    /// Of the four weeks in a row before them, those with the lowest cost per lead; none where none brought enough leads.
+    /// The four consecutive earlier weeks with the lowest cost per lead. `None` if no period brought enough
+    /// leads.
     pub cheapest: Option<AdSpell>,
 }
 
@@ -55,20 +57,21 @@ impl AdSpell {
         }
     }
 
-    /// Dollars a lead; none without leads.
+    /// Returns dollars per lead; `None` without leads.
     pub fn per_lead(&self) -> Option<f64> {
         (self.leads > 0).then(|| self.spend / f64::from(self.leads))
     }
 
-    /// Dollars a first bill; none without bills.
+    /// Returns dollars per first bill; `None` without bills.
     pub fn per_bill(&self) -> Option<f64> {
         self.billed.filter(|billed| *billed > 0).map(|billed| self.spend / f64::from(billed))
     }
 }
 
 impl PairCost {
-    /// How many times the cheapest cost per lead the present one is, where it rose by more than chance explains: at the
-    /// old cost the money would have brought enough leads. Without any lead it is counted as if the next dollar brought one.
+    /// Returns the ratio of the current to the lowest cost per lead if it rose by more than chance explains: at the
+    /// lowest cost, the money would have brought enough leads. Without any lead, assumes that the next dollar brings
+    /// one.
     pub fn rise(&self) -> Option<f64> {
         let before = self.cheapest?.per_lead()?;
         let now = self.recent.per_lead().unwrap_or(self.recent.spend);
@@ -76,7 +79,7 @@ impl PairCost {
     }
 }
 
-/// Every pair that was advertised in the last four weeks, the largest spend first.
+/// Returns the costs of every pair advertised in the last four weeks, highest spending first.
 pub fn pair_costs(weeks: &[ByGroup<GroupWeek>]) -> Vec<PairCost> {
     let last = weeks.len().saturating_sub(SPELL);
     let pairs = Group::all().flat_map(|group| Channel::ALL.map(|channel| (channel, group)));
@@ -138,7 +141,7 @@ mod tests {
         let dead = pair_costs(&weeks(&dead))[0];
         assert_eq!((dead.recent.per_lead(), dead.rise()), (None, Some(24.0)));
         let ended = [(20, 200.0, 1); 4].into_iter().chain([(0, 0.0, 0); 4]).collect::<Vec<_>>();
-        assert!(pair_costs(&weeks(&ended)).is_empty(), "nothing is spent");
+        assert!(pair_costs(&weeks(&ended)).is_empty(), "no spending in the last four weeks");
         assert!(pair_costs(&[]).is_empty());
     }
 }

@@ -1,11 +1,11 @@
-//! What happened in a lesson, in words.
+//! Text for the events and pages of a lesson.
 
 use super::words::money;
 use novamind_base::notation::{cents, compact, parse_number, percent, short_dollars};
 use novamind_course::{GoalPage, LessonPage, LessonQuestion};
 use novamind_record::trajectory::record::{LessonEvent, LessonNote};
 
-/// The word of an event, as lines write it.
+/// Returns the word for an event.
 pub fn word(event: LessonEvent) -> &'static str {
     match event {
         LessonEvent::Begun => "begun",
@@ -17,13 +17,13 @@ pub fn word(event: LessonEvent) -> &'static str {
     }
 }
 
-/// A line of kind `lesson` in words, for those who have not the lesson at hand.
+/// Describes a line of kind `lesson` without access to the lesson itself.
 pub fn in_words(note: &LessonNote) -> String {
     let number = note.number.unwrap_or(1);
     let value = note.value.map(compact).unwrap_or_else(|| "none".to_owned());
     match note.event {
-        LessonEvent::Begun if number > 1 => format!("step {} began, try {number}", note.step),
-        LessonEvent::Begun => format!("step {} began", note.step),
+        LessonEvent::Begun if number > 1 => format!("step {} started, try {number}", note.step),
+        LessonEvent::Begun => format!("step {} started", note.step),
         LessonEvent::Guess => format!("step {}: guessed {value}", note.step),
         LessonEvent::Hint => format!("step {}: hint {number}", note.step),
         LessonEvent::Pitfall => format!("step {}: pitfall {}", note.step, note.name.as_deref().unwrap_or("")),
@@ -35,7 +35,7 @@ pub fn in_words(note: &LessonNote) -> String {
     }
 }
 
-/// What a student sees of a lesson, as lines of text.
+/// Returns a lesson page, as the student sees it, as lines of text.
 pub fn page_in_words(page: &LessonPage) -> Vec<String> {
     let mut lines = vec![heading(page)];
     lines.extend(page.text.lines().map(str::to_owned));
@@ -58,7 +58,7 @@ pub fn page_in_words(page: &LessonPage) -> Vec<String> {
     lines
 }
 
-/// Which step of which lesson it is.
+/// Names the lesson, step and week.
 pub fn heading(page: &LessonPage) -> String {
     let part = page.part.as_ref().map(|part| format!(" · {part}")).unwrap_or_default();
     let again = if page.try_number > 1 { format!(", try {}", page.try_number) } else { String::new() };
@@ -73,7 +73,7 @@ pub fn heading(page: &LessonPage) -> String {
     )
 }
 
-/// The question of a step, what was guessed, and what came of it.
+/// Describes the question of a step, the student's guess and the outcome.
 pub fn question_in_words(question: &LessonQuestion) -> Vec<String> {
     let mut lines = vec![format!("Your guess: {}", question.text)];
     lines.extend(question.choices.iter().enumerate().map(|(at, choice)| format!("  {}) {choice}", at + 1)));
@@ -81,7 +81,7 @@ pub fn question_in_words(question: &LessonQuestion) -> Vec<String> {
     lines
 }
 
-/// What was guessed, and what came of it as far as it is known.
+/// Describes the guess, and the outcome if it is known.
 pub fn guess_and_outcome(question: &LessonQuestion) -> Vec<String> {
     let written = |value: f64| guess_in_words(question, value);
     let is_choice = !question.choices.is_empty();
@@ -93,22 +93,22 @@ pub fn guess_and_outcome(question: &LessonQuestion) -> Vec<String> {
     let outcome = match question.outcome {
         Some(outcome) => Some(said("The answer", "It was", outcome)),
         None if question.guess.is_some() && question.told_at_end => {
-            Some("What comes of it is told at the end of this part.".to_owned())
+            Some("You will see the result at the end of this part.".to_owned())
         }
         None => None,
     };
     guess.into_iter().chain(outcome).collect()
 }
 
-/// Whether a number is asked for that is a part of a whole, from 0 to 1.
+/// Returns whether a question asks for a share from 0 to 1.
 pub fn is_share(question: &LessonQuestion) -> bool {
     question.unit.starts_with("share")
 }
 
-/// A guess as it was typed: `12,000`, `12k`, `$1.2M`, the number of a choice; a share in hundredths where it ends in `%`.
+/// Parses a typed guess: `12,000`, `12k`, `$1.2M`, the number of a choice, or a share such as `0.4` or `40%`.
 ///
 /// # Errors
-/// It is no such number.
+/// Returns a message with an example if the text is not such a number.
 pub fn typed_guess(question: &LessonQuestion, text: &str) -> Result<f64, String> {
     let text = text.trim();
     let value = match text.strip_suffix('%') {
@@ -119,13 +119,13 @@ pub fn typed_guess(question: &LessonQuestion, text: &str) -> Result<f64, String>
     };
     let wanted = match (question.choices.is_empty(), is_share(question)) {
         (false, _) => "answer with the number of a choice",
-        (true, true) => "a share is a number from 0 to 1, for instance 0.4, or 40%",
-        (true, false) => "a guess is a number, for instance 12,000 or $1.2M",
+        (true, true) => "enter a share from 0 to 1, for example 0.4 or 40%",
+        (true, false) => "enter a number, for example 12,000 or $1.2M",
     };
     value.filter(|value| !is_share(question) || (0.0..=1.0).contains(value)).ok_or_else(|| wanted.to_owned())
 }
 
-/// A guess or an outcome in words.
+/// Formats a guess or an outcome.
 pub fn guess_in_words(question: &LessonQuestion, value: f64) -> String {
     match question.choices.get((value - 1.0).max(0.0) as usize) {
         Some(choice) => choice.clone(),
@@ -137,7 +137,7 @@ pub fn guess_in_words(question: &LessonQuestion, value: f64) -> String {
     }
 }
 
-/// A goal and what it stands at.
+/// Describes a goal and its current value.
 pub fn goal_in_words(goal: &GoalPage) -> String {
     let mark = match goal.met {
         Some(true) => "reached",
@@ -148,15 +148,15 @@ pub fn goal_in_words(goal: &GoalPage) -> String {
     format!("{mark}: {}{at}", goal.text)
 }
 
-/// What a goal stands at, beside what is to be reached as far as that is known.
+/// Describes a goal's current value, compared with the target if it is known.
 pub fn goal_at(goal: &GoalPage) -> Option<String> {
     let value = goal_amount(goal, goal.value?);
     Some(match (goal.bound, goal.of_good_play) {
-        (None, _) => format!("{value} so far; the good play's is told at the end of the step"),
+        (None, _) => format!("{value} so far; the target is shown at the end of the step"),
         (Some(bound), Some(share)) => {
             let good = goal_amount(goal, bound / share);
             format!(
-                "{value}, at least {} ({} of the good play's {good})",
+                "{value}, at least {} ({} of the reference play's {good})",
                 goal_amount(goal, bound),
                 percent(share, 1)
             )
@@ -166,7 +166,7 @@ pub fn goal_at(goal: &GoalPage) -> Option<String> {
     })
 }
 
-/// An amount of what a goal counts.
+/// Formats an amount in the unit of a goal.
 pub fn goal_amount(goal: &GoalPage, value: f64) -> String {
     match goal.in_dollars {
         true if value.abs() < 1000.0 => cents(value),
@@ -175,22 +175,21 @@ pub fn goal_amount(goal: &GoalPage, value: f64) -> String {
     }
 }
 
-/// What can be done next.
 fn next_in_words(page: &LessonPage) -> String {
     let open = page.question.as_ref().is_some_and(|question| question.guess.is_none());
     match page.next_part {
         Some(part) => format!(
-            "This part is over. lesson next begins part {part}; again {} tries the step again.",
+            "This part is complete. `lesson next` starts part {part}; `again {}` repeats the step.",
             page.step + 1
         ),
         None if page.is_over => {
             format!(
-                "The lesson is over: debrief shows what came of it; again {} tries the step again.",
+                "The lesson is complete. `debrief` shows the result; `again {}` repeats the step.",
                 page.step + 1
             )
         }
-        None if open => "Answer with guess ANSWER; then next runs a week.".to_owned(),
-        None if page.hints.len() < page.hints_in_all => "next runs a week; hint gives a hint.".to_owned(),
-        None => "next runs a week.".to_owned(),
+        None if open => "Answer with `guess ANSWER`. Then `next` runs a week.".to_owned(),
+        None if page.hints.len() < page.hints_in_all => "`next` runs a week. `hint` shows a hint.".to_owned(),
+        None => "`next` runs a week.".to_owned(),
     }
 }

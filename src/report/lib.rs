@@ -1,9 +1,8 @@
-//! A run reported: what a week changed, and the whole run as a `Story` that can be written as Markdown or as a page for
-//! a browser. A report says what the records show; it names no causes but those
-//! that days simulated again have shown (`why`).
+//! Reports on weeks and runs. A `Story` contains the data of a whole run and can be written as Markdown or HTML. Reports
+//! state what the records show; the only causes they name come from re-simulation (`why`).
 //!
-//! Everything here is computed from what a player may see: observations, the journal, and guarded queries. Each measure
-//! is one pure function. `outline` turns a story into a `page::Page`; the writers know nothing of companies.
+//! Everything is computed from data visible to the player: observations, the journal, and guarded queries. Each measure
+//! is one pure function. `outline` converts a story to a `page::Page`, which the writers format.
 
 pub mod anonymised;
 pub mod books;
@@ -61,47 +60,47 @@ pub use story::Story;
 pub use week::WeekReport;
 pub use words::{cash_change_in_words, category_name, count, first_change_in_words, origin_in_words};
 
-/// The report of a run as Markdown.
+/// Returns the report on a run as Markdown.
 pub fn as_markdown(story: &Story) -> String {
     markdown::write(&outline::page_of(story))
 }
 
-/// The report of a run as one page for a browser, without scripts and without other files.
+/// Returns the report on a run as one self-contained HTML page without scripts.
 pub fn as_html(story: &Story) -> String {
     html::write(&outline::page_of(story))
 }
 
-/// The debrief of a lesson as Markdown.
+/// Returns the debrief of a lesson as Markdown.
 pub fn debrief_as_markdown(own: &Debrief) -> String {
     markdown::write(&debrief::page_of(own))
 }
 
-/// The debrief of a lesson as one page for a browser, without scripts and without other files.
+/// Returns the debrief of a lesson as one self-contained HTML page without scripts.
 pub fn debrief_as_html(own: &Debrief) -> String {
     html::write(&debrief::page_of(own))
 }
 
-/// The card of a run, as text of 80 columns.
+/// Returns the card of a run as text of 80 columns.
 pub fn card_as_text(story: &Story) -> String {
     card::as_text(story)
 }
 
-/// The card of a run, as a drawing of 1200 by 630 that stands alone.
+/// Returns the card of a run as a self-contained SVG of 1200 by 630.
 pub fn card_as_svg(story: &Story) -> String {
     card::as_svg(story)
 }
 
-/// How a run was played, for whoever led the session, as Markdown.
+/// Returns the session summary for the experimenter as Markdown.
 pub fn session_as_markdown(logbook: &Logbook) -> String {
     markdown::write(&logbook::page_of(logbook))
 }
 
-/// How a run was played, for whoever led the session, as one page for a browser.
+/// Returns the session summary for the experimenter as one HTML page.
 pub fn session_as_html(logbook: &Logbook) -> String {
     html::write(&logbook::page_of(logbook))
 }
 
-/// The logbook of a short run on the disk.
+/// Returns the logbook of a short run on disk.
 #[cfg(any(test, feature = "test-kit"))]
 pub fn logbook_of_tests() -> Logbook {
     let (session, lines) = test_kit::recorded();

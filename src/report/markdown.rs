@@ -1,15 +1,12 @@
-//! A page as Markdown, readable as it stands and where Markdown is shown.
+//! Writes a page as Markdown that is readable as source and rendered.
 
 use super::page::{Bar, Block, Chart, Curve, Page, Plot, Table};
 use super::plot::{LEVELS, level};
 use novamind_base::notation::acts;
 
-/// Characters of a full bar.
 const BAR: usize = 24;
-/// Characters of a trend.
 const TREND: usize = 60;
 
-/// The page as Markdown.
 pub fn write(page: &Page) -> String {
     let tags: Vec<String> = page.tags.iter().map(|tag| escaped(tag)).collect();
     let mut parts = vec![
@@ -54,7 +51,6 @@ fn list(lines: &[String]) -> String {
     lines.iter().map(|line| format!("- {}", escaped(line))).collect::<Vec<_>>().join("\n")
 }
 
-/// A table whose columns stand below each other as text, too.
 fn table(table: &Table) -> String {
     let head: Vec<String> = table.columns.iter().map(|(name, _)| escaped(name)).collect();
     let rows: Vec<Vec<String>> =
@@ -96,7 +92,7 @@ fn chart_in_words(chart: &Chart) -> String {
     let mut parts = vec![format!("**{}.** {}", escaped(&chart.title), escaped(&chart.summary))];
     let trends: Vec<(String, String)> = match &chart.plot {
         Plot::Lines { curves, .. } => {
-            // Curves of one chart are read against each other: they have one scale.
+            // The curves of one chart share a scale so that they can be compared.
             let all: Vec<f64> = curves.iter().flat_map(values_of).collect();
             let trend = |own: &Curve| trend_between(&values_of(own), extremes(&all));
             curves.iter().map(|curve| (curve.name.clone(), trend(curve))).collect()
@@ -115,26 +111,24 @@ fn values_of(curve: &Curve) -> Vec<f64> {
     curve.points.iter().map(|point| point.1).collect()
 }
 
-/// Values as bars of one row, from the lowest to the highest by size; costs count by what they took.
+/// Draws values as one row of bars, scaled from the smallest to the largest; costs count by their amount.
 fn trend(values: &[f64]) -> String {
     let is_cost = values.iter().all(|own| *own <= 0.0);
     let sizes: Vec<f64> = picked(values).into_iter().map(|own| if is_cost { -own } else { own }).collect();
     trend_between(&sizes, extremes(&sizes))
 }
 
-/// As many of the values as a row has room for.
 fn picked(values: &[f64]) -> Vec<f64> {
     let count = values.len().min(TREND);
     (0..count).map(|at| values[at * (values.len() - 1) / (count - 1).max(1)]).collect()
 }
 
-/// The least and the greatest value.
 fn extremes(values: &[f64]) -> [f64; 2] {
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     [least, values.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
 }
 
-/// Values as bars of one row between two extremes.
+/// Draws values as one row of bars between two limits.
 fn trend_between(values: &[f64], [least, most]: [f64; 2]) -> String {
     let height = |value: &f64| match most > least {
         true => level((value - least) / (most - least)),
@@ -143,7 +137,7 @@ fn trend_between(values: &[f64], [least, most]: [f64; 2]) -> String {
     picked(values).iter().map(height).collect()
 }
 
-/// Text that means itself in Markdown: on one line, without markup of its own.
+/// Escapes text for Markdown: one line, without markup.
 pub fn escaped(text: &str) -> String {
     let flat: Vec<&str> = text.split_whitespace().collect();
     let letters: Vec<char> = flat.join(" ").chars().filter(|letter| !acts(*letter)).collect();
@@ -153,7 +147,7 @@ pub fn escaped(text: &str) -> String {
             |at: Option<usize>| at.and_then(|at| letters.get(at)).is_some_and(|own| own.is_alphanumeric());
         let marks = match letter {
             '\\' | '`' | '*' | '[' | ']' | '<' | '>' | '|' | '~' | '&' => true,
-            // Names of tools and channels read better without.
+            // Names of tools and channels are easier to read unescaped.
             '_' => !(inside_word(at.checked_sub(1)) && inside_word(at.checked_add(1))),
             '#' | '-' | '+' | '=' => {
                 at == 0 && letters.get(1).is_none_or(|next| !next.is_ascii_digit() && *next != '$')

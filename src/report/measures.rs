@@ -1,4 +1,4 @@
-//! How a run was played: the behaviour measures of the paper, as far as a player can see them. One function each.
+//! The behavior measures of the paper, as far as they follow from visible data. One function for each.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,7 +11,7 @@ use novamind_session::{
     Decisions, ForecastScore, JournalEntry, ScoredForecast, Session, SettingId, filed_forecasts,
 };
 
-/// Words that show somebody weighing what may come.
+/// Words that indicate planning.
 pub const PLANNING_WORDS: [&str; 16] = [
     "if",
     "unless",
@@ -31,33 +31,33 @@ pub const PLANNING_WORDS: [&str; 16] = [
     "instead",
 ];
 
-/// All measures.
+/// All behavior measures of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Measures {
-    /// Days that the company has lived.
+    /// Number of days that the company survived.
     pub survival_days: u32,
-    /// Cash at the end, or now.
+    /// Final or current cash, dollars.
     pub cash: f64,
-    /// Ads on the best channel of each group; none if nothing was spent.
+    /// Share of advertising on each group's best channel; `None` if nothing was spent.
     pub channels: Option<ChannelSkill>,
-    /// Targeted share of development spend; none if nothing was spent.
+    /// Targeted share of development spending; `None` if nothing was spent.
     pub targeted_development: Option<f64>,
-    /// Forecasts by horizon.
+    /// Forecast scores by horizon.
     pub forecasts: Vec<ForecastScore>,
-    /// Weeks with forecasts that were filled by the naive projection, and all weeks.
+    /// Number of weeks with naive forecasts, and of all weeks.
     pub filled_naively: (u32, u32),
-    /// Forecasts filed before the first four weeks, by horizon.
+    /// Scores of the forecasts filed before the first four weeks, by horizon.
     pub first_forecasts: Vec<ForecastScore>,
-    /// Ad spend on the truly best channels; only of runs that are over, and none if nothing was spent.
+    /// Share of advertising on the truly best channels. `None` for unfinished runs and if nothing was spent.
     pub truly_best: Option<TrulyBest>,
-    /// Calls of tools.
+    /// Use of tools.
     pub tools: ToolUse,
-    /// What was written before the weeks.
+    /// Length and planning words of rationales.
     pub planning: Planning,
 }
 
 impl Measures {
-    /// Measures of a run, with what its ads brought.
+    /// Computes the measures of a run, given its advertising results.
     pub fn of(session: &Session, channels: &[ChannelRow]) -> Measures {
         let (journal, day) = (session.journal(), session.day());
         Measures {
@@ -77,7 +77,7 @@ impl Measures {
     }
 }
 
-/// Days that the company has lived: to its bankruptcy, or so far.
+/// Returns the number of days that the company survived: to bankruptcy, or so far.
 pub fn survival_days(ended: Option<Ended>, day: u32, last_day: u32) -> u32 {
     match ended {
         Some(Ended::Horizon) => last_day,
@@ -85,52 +85,52 @@ pub fn survival_days(ended: Option<Ended>, day: u32, last_day: u32) -> u32 {
     }
 }
 
-/// Leads that a channel must have brought before it is called the best.
+/// Minimum number of leads for a channel to be named the best.
 pub const ENOUGH_LEADS: f64 = 3.0;
 
-/// The channel that brought a group most leads per dollar.
+/// The channel with the most leads per dollar for a group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BestChannel {
-    /// Its name.
+    /// Channel name.
     pub channel: String,
     /// Leads per thousand dollars.
     pub leads_per_thousand: f64,
-    /// Share of the group's ad spend on it.
+    /// Share of the group's advertising on this channel.
     pub share: f64,
 }
 
-/// Ads for one group.
+/// Advertising for one group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GroupAds {
     /// The group.
     pub group: String,
-    /// Channels that were paid for.
+    /// Number of channels with spending.
     pub tried: usize,
     /// Dollars spent on the group.
     pub spend: f64,
-    /// The best of the channels that were paid for; none if only one was, or if it brought fewer than three leads.
+    /// The best channel with spending; `None` if only one has any, or if the best brought fewer than three leads.
     pub best: Option<BestChannel>,
 }
 
-/// Ad spend on the best channels.
+/// Advertising on the best channels.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ChannelSkill {
-    /// Share of the ad spend on groups with a best channel that went to that channel; none if no group has one.
+    /// Share of the spending on groups with a best channel that went to that channel. `None` if no group has one.
     pub share: Option<f64>,
-    /// Groups, the largest spend first.
+    /// Groups, highest spending first.
     pub groups: Vec<GroupAds>,
 }
 
 impl ChannelSkill {
-    /// Mean over the groups that were advertised to of the channels that were paid for.
+    /// Returns the mean number of channels with spending, over the advertised groups.
     pub fn channels_tried(&self) -> f64 {
         let tried: usize = self.groups.iter().map(|group| group.tried).sum();
         tried as f64 / self.groups.len().max(1) as f64
     }
 }
 
-/// Share of ad spend on the best channel of each group, best by the leads per dollar that were measured. Only what was
-/// paid for can be measured, so a group counts if two channels or more were paid and the best brought enough leads.
+/// Returns the share of advertising on the best channel of each group, measured by leads per dollar. Only channels
+/// with spending can be measured, so a group counts if two or more have spending and the best brought enough leads.
 pub fn best_tried_channel_share(rows: &[ChannelRow]) -> Option<ChannelSkill> {
     let names: BTreeSet<&str> =
         rows.iter().filter(|row| row.spend > 0.0).map(|row| row.group.as_str()).collect();
@@ -154,7 +154,7 @@ pub fn best_tried_channel_share(rows: &[ChannelRow]) -> Option<ChannelSkill> {
 fn best_of(paid: &[&ChannelRow], spend: f64) -> Option<BestChannel> {
     let yield_of = |row: &ChannelRow| row.leads / row.spend;
     let best = paid.iter().max_by(|left, right| {
-        // Of equal ones the larger spend, then the first in the alphabet.
+        // Ties: larger spending first, then alphabetical order.
         let by_spend = left.spend.total_cmp(&right.spend);
         yield_of(left).total_cmp(&yield_of(right)).then(by_spend).then(right.channel.cmp(&left.channel))
     })?;
@@ -165,17 +165,17 @@ fn best_of(paid: &[&ChannelRow], spend: f64) -> Option<BestChannel> {
     })
 }
 
-/// Ad spend on the truly best channels: those with the highest yield of all five when the run began, which no player
-/// sees.
+/// Share of advertising on the truly best channels: those with the highest yield of all five at the start of the run,
+/// which is hidden from players.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TrulyBest {
-    /// Share of all ad spend that went to the truly best channel of its group. By chance it is a fifth.
+    /// Share of all advertising on the truly best channel of its group. Random spending reaches a fifth.
     pub share: f64,
     /// The share by group.
     pub groups: BTreeMap<String, f64>,
 }
 
-/// Ad spend on the truly best channels; none if nothing was spent, or they are not known.
+/// Returns the share of advertising on the truly best channels. `None` if nothing was spent or they are unknown.
 pub fn truly_best_channel_share(
     rows: &[ChannelRow],
     best: impl Fn(Group) -> Option<Channel>,
@@ -192,10 +192,10 @@ pub fn truly_best_channel_share(
     (all > 0.0).then(|| TrulyBest { share: on_best / all, groups: shares.collect() })
 }
 
-/// Weeks that count as the first ones.
+/// Number of weeks that count as the first.
 pub const FIRST_WEEKS: usize = 4;
 
-/// How the forecasts did that were filed before the first four weeks, by horizon.
+/// Returns the scores of forecasts filed before the first four weeks, by horizon.
 pub fn first_forecasts(journal: &[JournalEntry], cash_by_day: &[f64]) -> Vec<ForecastScore> {
     let filed = filed_forecasts(journal, cash_by_day);
     let days: BTreeSet<u32> = filed.iter().map(|one| one.day).collect();
@@ -205,7 +205,7 @@ pub fn first_forecasts(journal: &[JournalEntry], cash_by_day: &[f64]) -> Vec<For
     horizons.into_iter().map(|horizon| ForecastScore::of(horizon, &first)).collect()
 }
 
-/// Targeted share of development spend over the days that ran; none if nothing was spent.
+/// Returns the targeted share of development spending over the simulated days; `None` if nothing was spent.
 pub fn targeted_development(decisions: &[Decisions]) -> Option<f64> {
     let mut general = 0.0;
     let mut targeted: BTreeMap<Group, f64> = BTreeMap::new();
@@ -228,21 +228,21 @@ pub fn targeted_development(decisions: &[Decisions]) -> Option<f64> {
     (all > 0.0).then(|| aimed / all)
 }
 
-/// Calls of tools.
+/// Use of tools.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct ToolUse {
-    /// All confirmed calls that did something.
+    /// All accepted calls that changed something.
     pub calls: u32,
-    /// Calls for each week that ran.
+    /// Calls per simulated week.
     pub per_week: f64,
-    /// Tools by their calls, the most used first.
+    /// Number of calls by tool, most used first.
     pub tools: Vec<(String, u32)>,
-    /// How evenly the calls are spread over the tools that were used; none with fewer than two.
+    /// Evenness of calls over the tools used; `None` with fewer than two.
     pub evenness: Option<f64>,
 }
 
-/// Entropy of shares over that of equal ones: 1 where all are used alike, near 0 where one has nearly everything; none
-/// with fewer than two.
+/// Returns the entropy of the shares divided by that of equal shares: 1 for equal use, near 0 if one dominates.
+/// `None` with fewer than two counts.
 pub fn evenness(counts: &[u32]) -> Option<f64> {
     let all: f64 = counts.iter().map(|count| f64::from(*count)).sum();
     let used = counts.iter().filter(|count| **count > 0);
@@ -252,7 +252,7 @@ pub fn evenness(counts: &[u32]) -> Option<f64> {
     (kinds > 1).then(|| (entropy / libm::log(kinds as f64)).min(1.0))
 }
 
-/// How often which tools were called.
+/// Counts calls by tool.
 pub fn tool_use(journal: &[JournalEntry]) -> ToolUse {
     let mut counts: BTreeMap<&str, u32> = BTreeMap::new();
     let mut weeks = 0u32;
@@ -271,25 +271,25 @@ pub fn tool_use(journal: &[JournalEntry]) -> ToolUse {
     ToolUse { calls, per_week: f64::from(calls) / f64::from(weeks.max(1)), tools, evenness }
 }
 
-/// What was written before the weeks.
+/// Length and planning words of rationales.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Planning {
-    /// Rationales.
+    /// Number of rationales.
     pub rationales: u32,
-    /// Words in a rationale.
+    /// Mean number of words per rationale.
     pub words_each: f64,
-    /// Words of planning in a rationale.
+    /// Mean number of planning words per rationale.
     pub planning_each: f64,
 }
 
-/// Words of a text.
+/// Word counts of a text.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct Wording {
     /// All words.
     pub words: usize,
-    /// [`PLANNING_WORDS`] among them.
+    /// Number of [`PLANNING_WORDS`].
     pub planning: usize,
-    /// How often it says "if".
+    /// Number of times the word "if" occurs.
     pub ifs: usize,
 }
 
@@ -305,14 +305,14 @@ impl Wording {
         }
     }
 
-    /// Words of planning in a hundred words; none if there are no words.
+    /// Returns planning words per hundred words; `None` without words.
     pub fn planning_per_hundred(&self) -> Option<f64> {
         (self.words > 0).then(|| 100.0 * self.planning as f64 / self.words as f64)
     }
 }
 
-/// The sentences of a text that hold a word of planning, in their order. A sentence ends at a full stop, a question or
-/// exclamation mark before a blank, a semicolon, or the end of its line.
+/// Returns the sentences of a text that contain a planning word, in order. A sentence ends at a full stop, question
+/// mark or exclamation mark before a blank, at a semicolon, or at the end of its line.
 pub fn planning_sentences(text: &str) -> Vec<String> {
     let mut sentences = Vec::new();
     for line in text.lines() {
@@ -340,7 +340,7 @@ impl std::ops::AddAssign for Wording {
     }
 }
 
-/// How long rationales are and how much they weigh what may come.
+/// Measures the length of rationales and their share of planning words.
 pub fn planning(journal: &[JournalEntry]) -> Planning {
     let (mut rationales, mut all) = (0u32, Wording::default());
     for entry in journal {
@@ -352,7 +352,7 @@ pub fn planning(journal: &[JournalEntry]) -> Planning {
     Planning { rationales, words_each: each(all.words), planning_each: each(all.planning) }
 }
 
-/// Weeks with forecasts that were filled by the naive projection, and all weeks.
+/// Returns the number of weeks with naive forecasts, and of all weeks.
 pub fn filled_naively(journal: &[JournalEntry]) -> (u32, u32) {
     let filed = journal.iter().filter_map(|entry| match entry {
         JournalEntry::Advance { filled_naively, .. } => Some(filled_naively.contains(&true)),
@@ -381,7 +381,7 @@ mod tests {
             ads("E1", "search_ads", 1.0, 50.0),
         ];
         let skill = best_tried_channel_share(&rows).expect("money was spent");
-        assert_eq!(skill.share, Some(300.0 / 400.0), "one lead tells nothing of E1's channels");
+        assert_eq!(skill.share, Some(300.0 / 400.0), "one lead is too few to rank E1's channels");
         let first = &skill.groups[0];
         let best = first.best.as_ref().expect("two channels and thirty leads");
         assert_eq!((first.group.as_str(), first.tried), ("S1", 2));
@@ -407,11 +407,11 @@ mod tests {
         ];
         let told = truly_best_channel_share(&rows, best).expect("money was spent");
         assert_eq!((told.share, told.groups["S1"], told.groups["S3"]), (0.5, 0.375, 1.0));
-        // All on one wrong channel: nothing was compared, and nothing was right.
+        // All spending on one wrong channel: no comparison, and no share on the best.
         let wrong = [ads("S1", "linkedin", 50.0, 100.0)];
         assert_eq!(truly_best_channel_share(&wrong, best).map(|told| told.share), Some(0.0));
         assert_eq!(best_tried_channel_share(&wrong).and_then(|skill| skill.share), None);
-        assert_eq!(truly_best_channel_share(&rows, |_| None), None, "a run that is not over");
+        assert_eq!(truly_best_channel_share(&rows, |_| None), None, "an unfinished run");
         assert_eq!(truly_best_channel_share(&[], best), None);
     }
 

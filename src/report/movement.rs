@@ -1,34 +1,34 @@
-//! How unusual a change is against the weeks before it.
+//! Rates how unusual a change is compared with earlier weeks.
 
 /// A change of a figure over the last week.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Movement {
-    /// Value before.
+    /// Earlier value.
     pub old: f64,
-    /// Value now.
+    /// Current value.
     pub new: f64,
-    /// How unusual the change is: 0 is an ordinary week, above 3 is rare.
+    /// Rating of the change: 0 is an ordinary week, above 3 is rare.
     pub unusual: f64,
-    /// How much the figure varies by chance alone.
+    /// Random variation of the figure.
     pub noise: f64,
-    /// Weeks since a change in this direction was as large; none if there was none before.
+    /// Weeks since a change in this direction was as large; `None` if there was none.
     pub since: Option<usize>,
-    /// Changes before this one.
+    /// Number of earlier changes.
     pub known: usize,
 }
 
-/// Changes that have to be known before a week can be called unusual.
+/// Number of earlier changes needed to rate a week against them.
 const ENOUGH: usize = 4;
-/// Turns the median distance into a standard deviation, where changes are spread normally.
+/// Factor from the median distance to the standard deviation of a normal distribution.
 const NORMAL: f64 = 1.4826;
 
 impl Movement {
-    /// The change relative to the larger of both values.
+    /// Returns the change relative to the larger of both values.
     pub fn size(&self) -> f64 {
         (self.new - self.old).abs() / self.old.abs().max(self.new.abs())
     }
 
-    /// Where the change stands among all of the run, in words; empty if it is nothing special.
+    /// Describes the rank of the change within the run; empty if it is not remarkable.
     pub fn standing(&self) -> String {
         let what = if self.new > self.old { "rise" } else { "fall" };
         match self.since {
@@ -40,9 +40,9 @@ impl Movement {
     }
 }
 
-/// The last change of a series, oldest value first; none without two values or without a change. With enough weeks
-/// known it is measured against the median change and its usual distance from it, otherwise by its size. A change of about
-/// `noise`, by which the figure varies by chance alone, is never unusual.
+/// Rates the last change of a series, oldest value first. Returns `None` without two values or without a change. With
+/// enough weeks, compares it with the median change and the usual distance from it; otherwise uses its relative size.
+/// A change of about `noise`, the random variation of the figure, is never unusual.
 pub fn movement(series: &[f64], noise: f64) -> Option<Movement> {
     let [.., old, new] = *series else { return None };
     if old == new || !old.is_finite() || !new.is_finite() {
@@ -54,12 +54,12 @@ pub fn movement(series: &[f64], noise: f64) -> Option<Movement> {
     let since = before.iter().rev().position(as_large).map(|at| at + 1);
     let size = change.abs() / old.abs().max(new.abs());
     let unusual = if before.len() < ENOUGH {
-        // Half of the size of a figure counts as unusual, a tenth of it does not.
+        // A change by half counts as unusual, by a tenth does not.
         size * 6.0
     } else {
         let usual = median(&before);
         let distances: Vec<f64> = before.iter().map(|earlier| (earlier - usual).abs()).collect();
-        // A figure that never moved makes nothing infinitely unusual.
+        // Avoids an infinite rating for a figure that never changed.
         let spread = (NORMAL * median(&distances)).max(0.02 * old.abs().max(new.abs()));
         (change - usual).abs() / spread.max(noise)
     };
@@ -118,7 +118,7 @@ mod tests {
         let one = movement(&series, 1.0).expect("it moved");
         assert!(one.unusual <= 1.0, "{one:?}");
         assert_eq!(one.standing(), "");
-        // Growth that stops is no change to speak of.
+        // Stalled growth is not a notable change.
         let stalled =
             movement(&[0.0, 600.0, 1200.0, 1800.0, 2400.0, 3000.0, 3072.0], 180.0).expect("it moved");
         assert!(stalled.unusual < 1.0, "{stalled:?}");

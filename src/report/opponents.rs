@@ -1,4 +1,4 @@
-//! What the strong policies make of the world of a run that is over, beside the run itself.
+//! Results of strong policies in the same world as a finished run.
 
 use std::path::Path;
 
@@ -8,41 +8,41 @@ use novamind_base::notation::dollars;
 use novamind_record::folder::configuration::Configuration;
 use novamind_tools::Refusal;
 
-/// What became of a policy in the world of a run.
+/// Result of a policy in the world of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Opponent {
-    /// Its name.
+    /// Policy name.
     pub policy: String,
     /// Last simulated day.
     pub day: u32,
     /// Cash on that day, dollars; the score is 0 after a bankruptcy.
     pub cash: f64,
-    /// It went bankrupt on that day.
+    /// Whether it went bankrupt on that day.
     pub is_bankrupt: bool,
-    /// Why it stopped on that day, if a tool refused what it called.
+    /// The rejection that stopped it on that day, if any.
     pub stopped: Option<String>,
 }
 
 /// A run and its opponents.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Opponents {
-    /// The day on which scores are compared: the last of the run's world, or of a lesson's part.
+    /// Day of comparison: the last day of the run's world, or of a lesson's part.
     pub day: u32,
-    /// The policies, the one with the highest score first.
+    /// The policies, highest score first.
     pub policies: Vec<Opponent>,
 }
 
-/// Plays the opponents of the run in a folder, as long as it is to go on; none if it was stopped.
+/// Plays the opponents of the run in a folder while the callback returns true. Returns `None` if it was stopped.
 pub type PlayOpponents =
     fn(&Path, &Configuration, &(dyn Fn() -> bool + Sync)) -> Result<Option<Opponents>, Refusal>;
 
 impl Opponent {
-    /// What it ends with: its cash, nothing after a bankruptcy.
+    /// Returns the final cash in dollars; 0 after a bankruptcy.
     pub fn score(&self) -> f64 {
         if self.is_bankrupt { 0.0 } else { self.cash }
     }
 
-    /// How it ended, in words.
+    /// Describes the end.
     pub fn in_words(&self) -> String {
         match &self.stopped {
             Some(why) => format!("{} when it stopped on day {}: {why}", dollars(self.cash), self.day),
@@ -53,12 +53,12 @@ impl Opponent {
 }
 
 impl Opponents {
-    /// What they are, in words.
+    /// Describes the comparison.
     pub fn in_words(&self) -> String {
-        format!("each policy plays the world of this run from day 0 to day {}, with the same luck", self.day)
+        format!("each policy plays this run's world from day 0 to day {}, with the same seed", self.day)
     }
 
-    /// How many end with more than a score.
+    /// Returns how many have a higher score.
     pub fn ahead_of(&self, score: f64) -> usize {
         self.policies.iter().filter(|own| own.score() > score).count()
     }

@@ -1,4 +1,4 @@
-//! From a story to a page: what is told, in which order, in which words.
+//! Builds the page of a run report.
 
 mod charts;
 
@@ -11,7 +11,6 @@ use novamind_base::notation::{capital, grouped, percent, signed_dollars};
 use novamind_record::trajectory::record::Ended;
 use novamind_session::ModelStamp;
 
-/// The page that tells a story.
 pub fn page_of(story: &Story) -> Page {
     let seen = &story.seen;
     let mut blocks = Vec::new();
@@ -19,7 +18,7 @@ pub fn page_of(story: &Story) -> Page {
         blocks.extend(ruined(ruin));
     }
     blocks.push(Block::Facts(result(story)));
-    blocks.extend(story.books.missing.iter().map(|what| Block::Warning(format!("Left out: {what}"))));
+    blocks.extend(story.books.missing.iter().map(|what| Block::Warning(format!("Not included: {what}"))));
     blocks.push(Block::Heading("Cash"));
     blocks.extend(charts::cash(story));
     blocks.extend(charts::income_and_costs(story));
@@ -47,7 +46,7 @@ pub fn page_of(story: &Story) -> Page {
         tags,
         blocks,
         foot: format!(
-            "Recorded by NovaMind console {}. Every figure is one a player can see; the run can be replayed to the same \
+            "Recorded by NovaMind console {}. All figures are visible to players; the run can be replayed to the same \
              state from its trajectory.",
             story.version
         ),
@@ -58,18 +57,18 @@ fn result(story: &Story) -> Vec<Fact> {
     let seen = &story.seen;
     let score = match (seen.ended, seen.score) {
         (_, Some(score)) => Fact::new("Score", money(score), rank_in_words(story)),
-        (Some(Ended::Abandoned), None) => Fact::new("Score", "none", "given up"),
+        (Some(Ended::Abandoned), None) => Fact::new("Score", "none", "abandoned"),
         (_, None) => Fact::new("Cash", money(seen.cash), cash_change_in_words(seen)),
     };
     let lived = story.measures.survival_days;
     let last_day = whole(f64::from(seen.last_day));
     let most = story.weeks.iter().map(|week| week.individual_subscribers).max().unwrap_or(0);
     let seats = story.weeks.iter().map(|week| week.enterprise_seats).max().unwrap_or(0);
-    // Cash over what the settings commit to and what recent weeks brought and used: not the change since the start.
+    // The runway from committed settings and recent weeks' income and usage, not from the change since the start.
     let runway = match (seen.ended, seen.weeks_of_cash()) {
         (Some(_), _) => String::new(),
-        (None, None) => "at present costs and income cash lasts to the last day".to_owned(),
-        (None, Some(weeks)) => format!("at present costs and income cash lasts {}", count(weeks, "week")),
+        (None, None) => "at current costs and income, cash lasts to the last day".to_owned(),
+        (None, Some(weeks)) => format!("at current costs and income, cash lasts {}", count(weeks, "week")),
     };
     let change = signed_dollars(seen.cash - story.start_cash);
     vec![
@@ -79,12 +78,12 @@ fn result(story: &Story) -> Vec<Fact> {
         Fact::new(
             "Subscribers",
             whole(f64::from(seen.subscribers)),
-            format!("at most {}", whole(f64::from(most))),
+            format!("peak {}", whole(f64::from(most))),
         ),
         Fact::new(
             "Enterprise seats",
             whole(f64::from(seen.seats)),
-            format!("at most {}", whole(f64::from(seats))),
+            format!("peak {}", whole(f64::from(seats))),
         ),
         Fact::new(
             "Recurring revenue",
@@ -101,17 +100,16 @@ fn rank_in_words(story: &Story) -> String {
     }
 }
 
-/// How the company went under.
 fn ruined(ruin: &Ruin) -> Vec<Block> {
     let mut blocks = vec![Block::Heading("How it ended")];
     blocks.push(Block::Text(format!(
-        "Cash fell below zero on day {}, which ended the company. {}",
+        "Cash fell below zero on day {}, which ended the run. {}",
         ruin.day,
         ruin.turned.join(" ")
     )));
     if !ruin.costs.is_empty() {
         let most = ruin.costs.iter().map(|cost| cost.share).fold(0.0, f64::max);
-        blocks.push(Block::Text("Where the money went:".to_owned()));
+        blocks.push(Block::Text("Costs by category:".to_owned()));
         let bar = |cost: &super::turn::Cost| Bar {
             name: cost.name.to_owned(),
             shown: format!("{} · {}", money(cost.dollars), percent(cost.share, 0)),
@@ -133,14 +131,16 @@ fn rank(story: &Story) -> Vec<Block> {
         own: place.whose == Whose::Own,
     };
     let told = match standing.rank {
-        Some(_) => format!("{}: cash at the end, the best of three runs of each agent.", capital(&standing.in_words())),
+        Some(_) => {
+            format!("{}: final cash, the best of three runs of each agent.", capital(&standing.in_words()))
+        }
         None if !standing.obstacles.is_empty() => format!("{}.", capital(&standing.in_words())),
-        None => "The run has no score to compare; these are the published results: cash at the end, the best of three \
+        None => "The run has no score to compare. Published results: final cash, the best of three \
                  runs of each agent."
             .to_owned(),
     };
     let mut blocks = vec![
-        Block::Heading("Beside the published results"),
+        Block::Heading("Comparison with published results"),
         Block::Text(told),
         Block::Bars(standing.places.iter().map(bar).collect()),
     ];
@@ -157,7 +157,7 @@ fn highlights(story: &Story) -> Vec<Block> {
     vec![
         Block::Heading("Highlights"),
         Block::Table(Table {
-            columns: vec![("day", true), ("what happened", false)],
+            columns: vec![("day", true), ("event", false)],
             rows: story.highlights.iter().map(row).collect(),
         }),
     ]
@@ -190,7 +190,7 @@ fn customers(story: &Story) -> Vec<Block> {
                 ("group", false),
                 ("leads", true),
                 ("customers now", true),
-                ("at most", true),
+                ("peak", true),
                 ("seats billed", true),
                 ("billed a month", true),
             ],
@@ -212,7 +212,7 @@ fn forecasts(story: &Story) -> Vec<Block> {
     }
     if !story.shows_calibration() {
         let due: u32 = scored.iter().map(|score| score.scored).sum();
-        let text = format!("{} came due. How they did is told once the run is over.", count(due, "forecast"));
+        let text = format!("{} came due. Scores are shown when the run has ended.", count(due, "forecast"));
         blocks.push(Block::Text(text));
         return blocks;
     }
@@ -227,22 +227,22 @@ fn forecasts(story: &Story) -> Vec<Block> {
     };
     blocks.push(Block::Table(Table {
         columns: vec![
-            ("ahead", false),
+            ("horizon", false),
             ("came due", true),
-            ("inside", true),
-            ("typical miss", true),
-            ("width of the interval", true),
+            ("coverage", true),
+            ("typical error", true),
+            ("interval width", true),
         ],
         rows: scored.iter().map(row).collect(),
     }));
     blocks.push(Block::Note(
-        "Inside: how often the outcome fell within the 95 % interval; the aim is 95 %. Miss and width are relative to the outcome."
+        "Coverage: share of 95 % intervals that contain the outcome; the aim is 95 %. Error and width are relative to the outcome."
             .to_owned(),
     ));
     let (naive, all) = story.measures.filled_naively;
     if naive > 0 {
         blocks.push(Block::Note(format!(
-            "In {naive} of {}, at least one forecast was filled by the naive projection.",
+            "In {naive} of {}, at least one forecast was naive.",
             count(all, "week")
         )));
     }
@@ -250,7 +250,7 @@ fn forecasts(story: &Story) -> Vec<Block> {
     blocks
 }
 
-/// Leads per thousand dollars; few of them keep the decimals that tell them from none.
+/// Formats leads per thousand dollars; small values keep decimals.
 fn per_thousand(leads: f64) -> String {
     grouped(leads, if leads < 1.0 { 3 } else { 1 })
 }
@@ -262,14 +262,14 @@ fn behaviour(measures: &Measures, published: bool) -> Vec<Block> {
     let planning = &measures.planning;
     blocks.push(Block::Facts(vec![
         Fact::new(
-            "Ads on the best channel measured",
+            "Advertising on the best channel",
             measures
                 .channels
                 .as_ref()
                 .and_then(|skill| skill.share)
                 .map_or_else(none, |share| percent(share, 0)),
             format!(
-                "of the spend on groups with two paid channels and a best of {ENOUGH_LEADS} leads or more"
+                "of spending on groups with two paid channels and at least {ENOUGH_LEADS} leads from the best"
             ),
         ),
         Fact::new(
@@ -281,14 +281,14 @@ fn behaviour(measures: &Measures, published: bool) -> Vec<Block> {
             },
         ),
         Fact::new(
-            "Calls a week",
+            "Calls per week",
             format!("{:.2}", measures.tools.per_week),
-            format!("{} in all", whole(f64::from(measures.tools.calls))),
+            format!("{} in total", whole(f64::from(measures.tools.calls))),
         ),
         Fact::new(
-            "Words of planning",
+            "Planning words",
             format!("{:.1}", planning.planning_each),
-            format!("in a rationale of {:.0} words", planning.words_each),
+            format!("per rationale of {:.0} words", planning.words_each),
         ),
     ]));
     if let Some(skill) = &measures.channels {
@@ -308,18 +308,16 @@ fn behaviour(measures: &Measures, published: bool) -> Vec<Block> {
                 ("group", false),
                 ("ad spend", true),
                 ("channels tried", true),
-                ("best of them", false),
+                ("best channel", false),
                 ("leads per $1,000", true),
-                ("share on it", true),
+                ("share on best", true),
             ],
             rows: skill.groups.iter().map(row).collect(),
         }));
-        blocks.push(Block::Note(
-            format!(
-                "The best channel is the one with most leads per dollar among those that were paid for; none is named if \
-                 only one was, or if it brought fewer than {ENOUGH_LEADS} leads."
-            ),
-        ));
+        blocks.push(Block::Note(format!(
+            "The best channel has the most leads per dollar among the paid channels. None is named if \
+                 only one was paid, or if the best brought fewer than {ENOUGH_LEADS} leads."
+        )));
     }
     if !measures.tools.tools.is_empty() {
         let row = |(tool, calls): &(String, u32)| vec![tool.clone(), calls.to_string()];
@@ -328,14 +326,14 @@ fn behaviour(measures: &Measures, published: bool) -> Vec<Block> {
             rows: measures.tools.tools.iter().take(10).map(row).collect(),
         }));
     }
-    blocks.push(Block::Note(format!("Words of planning: {}.", PLANNING_WORDS.join(", "))));
+    blocks.push(Block::Note(format!("Planning words: {}.", PLANNING_WORDS.join(", "))));
     blocks
 }
 
 fn decisions(story: &Story) -> Vec<Block> {
     let mut blocks = vec![Block::Heading("Decisions by week")];
     if story.chapters.is_empty() {
-        blocks.push(Block::Text("No week has passed yet.".to_owned()));
+        blocks.push(Block::Text("No week has run yet.".to_owned()));
     }
     for chapter in &story.chapters {
         let weeks = match chapter.last_week == chapter.week {
@@ -350,7 +348,7 @@ fn decisions(story: &Story) -> Vec<Block> {
             lines.push(format!("“{}”", chapter.why));
         }
         if points.is_empty() {
-            lines.push("Nothing was changed.".to_owned());
+            lines.push("No changes.".to_owned());
         }
         blocks.push(Block::Folded { title, note, lines, points });
     }

@@ -1,65 +1,65 @@
-//! A page before it is written: headings, sentences, tables and charts, without a format.
+//! Format-independent model of a page: headings, sentences, tables and charts.
 
 /// A page.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Page {
-    /// What it is about.
+    /// Title.
     pub title: String,
-    /// The one sentence to take away.
+    /// The main result in one sentence.
     pub headline: String,
-    /// What kind of run it is, in short facts.
+    /// Short facts about the run.
     pub tags: Vec<String>,
-    /// The rest.
+    /// Content.
     pub blocks: Vec<Block>,
-    /// Who made it.
+    /// Origin of the page.
     pub foot: String,
 }
 
-/// A part of a page.
+/// An element of a page.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Block {
     /// A heading.
     Heading(&'static str),
-    /// Sentences.
+    /// A paragraph.
     Text(String),
-    /// A remark in small letters.
+    /// A remark in small print.
     Note(String),
     /// A warning.
     Warning(String),
-    /// Names with their values, to be seen at a glance: name, value, what it means.
+    /// Key figures.
     Facts(Vec<Fact>),
     /// A table.
     Table(Table),
-    /// Values as bars beside each other.
+    /// Values as horizontal bars.
     Bars(Vec<Bar>),
     /// A chart.
     Chart(Chart),
-    /// Something with a title that can be folded away.
+    /// A section that can be collapsed.
     Folded {
         /// Title.
         title: String,
-        /// What is worth knowing about it at the right end.
+        /// Summary at the right end of the title line.
         note: String,
         /// Sentences.
         lines: Vec<String>,
-        /// Points of a list.
+        /// List items.
         points: Vec<String>,
     },
 }
 
-/// A value with its name.
+/// A named value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fact {
     /// Name.
     pub name: String,
     /// Value.
     pub value: String,
-    /// What to compare it with; may be empty.
+    /// Reference value or explanation; can be empty.
     pub note: String,
 }
 
 impl Fact {
-    /// A value with its name.
+    /// Returns a named value.
     pub fn new(name: impl Into<String>, value: impl Into<String>, note: impl Into<String>) -> Fact {
         Fact { name: name.into(), value: value.into(), note: note.into() }
     }
@@ -68,7 +68,7 @@ impl Fact {
 /// A table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
-    /// Heads of the columns, and whether they hold numbers.
+    /// Column heads, and whether the column is numeric.
     pub columns: Vec<(&'static str, bool)>,
     /// Cells by row.
     pub rows: Vec<Vec<String>>,
@@ -79,44 +79,44 @@ pub struct Table {
 pub struct Bar {
     /// Name.
     pub name: String,
-    /// Value as it is written.
+    /// Formatted value.
     pub shown: String,
     /// Length, 0 to 1.
     pub share: f64,
-    /// It is the one that matters.
+    /// Whether the bar is highlighted.
     pub own: bool,
 }
 
 /// A chart over days or weeks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
-    /// What it shows.
+    /// Title.
     pub title: String,
-    /// The same in a sentence, for those who cannot see it.
+    /// Text alternative of the chart.
     pub summary: String,
-    /// What the horizontal axis counts.
+    /// Unit of the horizontal axis.
     pub across: &'static str,
-    /// Values are dollars.
+    /// Whether values are dollars.
     pub dollars: bool,
-    /// Values that the vertical axis may not leave, if far ones would flatten the rest.
+    /// Limits of the vertical axis, if outliers would flatten the rest.
     pub within: Option<(f64, f64)>,
-    /// What is drawn.
+    /// Data of the chart.
     pub plot: Plot,
 }
 
-/// What a chart draws.
+/// Data of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Plot {
-    /// Lines, over an interval if there is one.
+    /// Lines, with an optional interval.
     Lines {
         /// Lines.
         curves: Vec<Curve>,
         /// An interval.
         band: Option<Band>,
     },
-    /// Bars of parts on each other; parts above zero go up, the others down.
+    /// Stacked bars; positive parts go up, negative ones down.
     Stacks {
-        /// Place of each bar on the horizontal axis.
+        /// Position of each bar on the horizontal axis.
         at: Vec<f64>,
         /// Parts.
         parts: Vec<Part>,
@@ -137,7 +137,7 @@ pub struct Curve {
 pub struct Band {
     /// Name.
     pub name: String,
-    /// Place, lower end, upper end.
+    /// Position, lower end, upper end.
     pub points: Vec<(f64, f64, f64)>,
 }
 

@@ -1,30 +1,30 @@
-//! Parameters that a debug run has set, in words.
+//! Text for parameters that a debug run has changed.
 
 use serde_json::Value;
 
 use novamind_session::{ChangedParameter, ChangedParameters};
 
-/// `group.S1.c_max_mean: 50 → 300, from day 30 on`
+/// Describes a change: `group.S1.c_max_mean: 50 → 300, from day 30`.
 pub fn set_in_words(set: &ChangedParameter, today: u32) -> String {
     let ChangedParameter { key, old, new, from_day } = set;
-    let change = if old == new { format!("{new}, as before") } else { format!("{old} → {new}") };
+    let change = if old == new { format!("{new}, unchanged") } else { format!("{old} → {new}") };
     match from_day {
-        Some(day) => format!("{key}: {change}, from day {day} on"),
-        None => format!("{key}: {change}, from now on; day {} is simulated with it", today + 1),
+        Some(day) => format!("{key}: {change}, from day {day}"),
+        None => format!("{key}: {change}, effective from day {}", today + 1),
     }
 }
 
-/// A parameter that was set, as the record tells it: `set leads.saturation_base: 1 → 0.9 from day 30 on`.
+/// Describes a recorded change: `set leads.saturation_base: 1 → 0.9 from day 30`.
 pub fn entry_in_words(key: &str, [old, new]: [&Value; 2], from_day: Option<u32>) -> String {
     format!("set {key}: {old} → {new}{}", since_in_words(from_day))
 }
 
-/// ` from day 30 on`; nothing where it acted at once.
+/// Returns ` from day 30`, or an empty string for an immediate change.
 pub fn since_in_words(from_day: Option<u32>) -> String {
-    from_day.map_or(String::new(), |day| format!(" from day {day} on"))
+    from_day.map_or(String::new(), |day| format!(" from day {day}"))
 }
 
-/// What differs from the scenario, one parameter in a line, and what waits for its day.
+/// Lists the parameters that differ from the scenario, and those scheduled for a later day.
 pub fn changed_in_words(changed: &ChangedParameters) -> Vec<String> {
     let against = match &changed.scenario {
         Some(name) => format!("scenario {name}"),
@@ -39,12 +39,13 @@ pub fn changed_in_words(changed: &ChangedParameters) -> Vec<String> {
         changed.in_force.iter().map(|own| format!("  {}: {} → {}", own.key, shown(&own.old), own.new)),
     );
     if !changed.waiting.is_empty() {
-        lines.push("set from a later day on:".to_owned());
+        lines.push("scheduled for a later day:".to_owned());
     }
     lines.extend(
-        changed.waiting.iter().map(|own| {
-            format!("  {}: {} from day {} on", own.key, own.new, own.from_day.unwrap_or_default())
-        }),
+        changed
+            .waiting
+            .iter()
+            .map(|own| format!("  {}: {} from day {}", own.key, own.new, own.from_day.unwrap_or_default())),
     );
     lines
 }
@@ -65,12 +66,12 @@ mod tests {
     #[test]
     fn a_change_says_what_was_what_is_and_from_when() {
         let now = changed("a.b", json!(50), json!(300), None);
-        assert_eq!(set_in_words(&now, 7), "a.b: 50 → 300, from now on; day 8 is simulated with it");
+        assert_eq!(set_in_words(&now, 7), "a.b: 50 → 300, effective from day 8");
         let later = changed("a.b", json!(0.5), json!([1, 2]), Some(30));
-        assert_eq!(set_in_words(&later, 7), "a.b: 0.5 → [1,2], from day 30 on");
+        assert_eq!(set_in_words(&later, 7), "a.b: 0.5 → [1,2], from day 30");
         assert_eq!(
             set_in_words(&changed("a.b", json!(1), json!(1), Some(9)), 7),
-            "a.b: 1, as before, from day 9 on"
+            "a.b: 1, unchanged, from day 9"
         );
     }
 
@@ -87,8 +88,8 @@ mod tests {
             [
                 "1 parameter differs from the start of the run:",
                 "  a.b: 50 → 300",
-                "set from a later day on:",
-                "  c.d: 2 from day 30 on",
+                "scheduled for a later day:",
+                "  c.d: 2 from day 30",
             ]
         );
     }

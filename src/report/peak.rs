@@ -1,21 +1,21 @@
-//! The peak that capacity has to hold next week: the busiest day of the last week, times its growth over the busiest day of
-//! the week before. A projection at last week's growth, and named so wherever it stands.
+//! Projected peak usage of next week: the busiest day of the last week times its growth over the busiest day of the
+//! week before. It is labeled as a projection wherever it is shown.
 
 use super::words::whole;
 use novamind_base::notation::percent;
 use novamind_record::figures::WeekFigures;
 
-/// The busiest days of the last two weeks, and the next at the same growth.
+/// Busiest day of the last week, and its growth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PeakProjection {
-    /// Units of the busiest day of the last week.
+    /// Usage of the busiest day of the last week, units.
     pub busiest: f64,
-    /// Times the busiest day of the week before.
+    /// Ratio to the busiest day of the week before.
     pub growth: f64,
 }
 
 impl PeakProjection {
-    /// From the last two weeks, if both are whole and somebody used the product in them.
+    /// Returns the projection if the last two weeks are complete and have usage.
     pub fn of(weeks: &[WeekFigures]) -> Option<PeakProjection> {
         let [.., before, last] = weeks else { return None };
         let is_whole = |week: &WeekFigures| week.days_run == 7 && week.busiest_day > 0;
@@ -25,32 +25,33 @@ impl PeakProjection {
         })
     }
 
-    /// Units of the busiest day of the next week at last week's growth.
+    /// Returns the projected usage of next week's busiest day, units.
     pub fn next(&self) -> f64 {
         self.busiest * self.growth
     }
 
-    /// Beside what a tier serves: `at last week's growth (+12%) next week's peak is 61,000 units, 76% of tier 1`.
+    /// Compares the projection with a tier: `at last week's growth (+12%), next week's peak is 61,000 units, 76% of
+    /// tier 1`.
     pub fn in_words(&self, tier: u32, units: f64) -> String {
         let share = percent(self.next() / units.max(1.0), 0);
         format!(
-            "at last week's growth ({}) next week's peak is {} units, {share} of tier {tier}",
+            "at last week's growth ({}), next week's peak is {} units, {share} of tier {tier}",
             self.growth_in_words(),
             whole(self.next())
         )
     }
 
-    /// Growth with its sign: `+12%`.
+    /// Formats growth with its sign: `+12%`.
     pub fn growth_in_words(&self) -> String {
         let growth = percent(self.growth - 1.0, 0);
         if growth.starts_with('-') { growth } else { format!("+{growth}") }
     }
 }
 
-/// What a tier holds beside the busiest day of the last week: `tier 1 holds 80,000 units a day; the busiest day of the
+/// Compares a tier with the busiest day of the last week: `tier 1 serves 80,000 units a day; the busiest day of the
 /// last week had 61,000, 76% of it`.
 pub fn peak_beside_tier(weeks: &[WeekFigures], tier: u32, units: f64) -> String {
-    let holds = format!("tier {tier} holds {} units a day", whole(units));
+    let holds = format!("tier {tier} serves {} units a day", whole(units));
     match weeks.last() {
         None => format!("{holds}; no week has run yet"),
         Some(week) => {
@@ -70,7 +71,7 @@ mod tests {
     #[test]
     fn the_projection_follows_from_the_days_in_the_tables() {
         let mut session = played(6);
-        let projection = PeakProjection::of(session.weeks()).expect("two weeks with use");
+        let projection = PeakProjection::of(session.weeks()).expect("two weeks with usage");
         let mut busiest = |from: u32| {
             let sql = format!(
                 "SELECT max(total_usage_units) FROM service_day WHERE day > {from} AND day <= {from} + 7"
@@ -87,7 +88,7 @@ mod tests {
         let week = WeekFigures { days_run: 7, busiest_day: 61_000, ..WeekFigures::default() };
         assert_eq!(
             peak_beside_tier(&[week], 1, 80_000.0),
-            "tier 1 holds 80,000 units a day; the busiest day of the last week had 61,000, 76% of it"
+            "tier 1 serves 80,000 units a day; the busiest day of the last week had 61,000, 76% of it"
         );
         assert!(peak_beside_tier(&[], 1, 80_000.0).ends_with("no week has run yet"));
     }

@@ -1,6 +1,7 @@
-//! Gross margins of plans: what their subscribers pay beside the compute that their use costs, on the models that serve
-//! them and on others. There is one definition, for the screen of the product, the forms and plain mode: the use of the
-//! last day, 30 days a month, beside what those who used it pay a month. Who signed on that day has used nothing yet.
+//! Gross margins of plans: subscription revenue compared with the compute cost of usage, on the current model tiers
+//! and on others. Product screen, forms and plain mode share this definition: usage of the last day, 30 days a month,
+//! compared with the monthly price of the subscriptions that were active on it. Subscriptions that started on that
+//! day have no usage yet.
 
 mod sentences;
 
@@ -15,31 +16,28 @@ use novamind_session::identifiers::{ByPlan, Group, Plan};
 use novamind_session::{Session, query_refusal};
 use novamind_tools::{Refusal, ToolId};
 
-/// Active subscriptions by group and plan.
 const SUBSCRIBERS: &str = include_str!("../../assets/readings/subscribers.sql");
-/// Units of the last day by group and plan.
 const USAGE: &str = include_str!("../../assets/readings/usage.sql");
-/// Days of a month of billing.
 const MONTH: f64 = 30.0;
-/// Instead of margins, before anybody used a plan.
-const NOTHING_MEASURED: &str = "no margins: no use of subscribers has been measured";
+/// Shown in place of margins until usage has been measured.
+const NOTHING_MEASURED: &str = "no margins: usage has not been measured yet";
 
-/// Subscribers, what they pay and what they used on the last day.
+/// Subscribers of a plan, their payments and their usage on the last day.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PlanUse {
     /// Active subscriptions.
     pub customers: f64,
-    /// Their seats.
+    /// Seats of the active subscriptions.
     pub seats: f64,
-    /// What they pay, dollars a month.
+    /// Revenue of the active subscriptions, dollars a month.
     pub monthly: f64,
-    /// Subscriptions that were there on the last day.
+    /// Subscriptions that could use the product on the last day.
     pub accounts: f64,
     /// Their seats.
     pub users: f64,
-    /// Units they used on it.
+    /// Their usage on the last day, units.
     pub units: f64,
-    /// What they pay, dollars a month.
+    /// Their revenue, dollars a month.
     pub paid_by_users: f64,
 }
 
@@ -56,17 +54,18 @@ impl PlanUse {
         }
     }
 
-    /// Units a day and seat; none where nobody was there on the last day.
+    /// Returns units a day and seat; `None` without subscriptions on the last day.
     pub fn usage(&self) -> Option<f64> {
         (self.users > 0.0).then(|| self.units / self.users)
     }
 
-    /// Dollars a month and seat for compute, at dollars a unit.
+    /// Returns the compute cost in dollars a month and seat, given dollars a unit.
     pub fn compute(&self, unit_cost: f64) -> Option<f64> {
         self.usage().map(|usage| usage * MONTH * unit_cost)
     }
 
-    /// Dollars a month and seat that are paid by those whose use is known; by all where nobody's is.
+    /// Returns revenue in dollars a month and seat of the subscriptions with measured usage, or of all if none has
+    /// any.
     pub fn revenue(&self) -> Option<f64> {
         match self.users > 0.0 {
             true => Some(self.paid_by_users / self.users),
@@ -74,29 +73,27 @@ impl PlanUse {
         }
     }
 
-    /// What is paid for a month and seat, where use is known too.
     fn measured_revenue(&self) -> Option<f64> {
         self.revenue().filter(|_| self.usage().is_some())
     }
 
-    /// Share of what is paid that compute leaves, at dollars a unit.
+    /// Returns the share of revenue left after compute, given dollars a unit.
     pub fn margin(&self, unit_cost: f64) -> Option<f64> {
         margin(self.revenue()?, self.compute(unit_cost)?)
     }
 
-    /// The same if every account used up a quota of units a day.
+    /// Returns the margin for accounts that use their full quota, units a day.
     fn margin_of_full_quota(&self, quota: f64, unit_cost: f64) -> Option<f64> {
         let full = PlanUse { units: self.accounts * quota, ..*self };
         full.margin(unit_cost)
     }
 }
 
-/// Share of a price that its compute leaves.
 fn margin(price: f64, compute: f64) -> Option<f64> {
     (price > 0.0).then(|| 1.0 - compute / price)
 }
 
-/// What the subscribers of each group and plan pay and use.
+/// Revenue and usage by group and plan.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Sales {
     held: Vec<(Group, Plan, PlanUse)>,
@@ -104,10 +101,10 @@ pub struct Sales {
 }
 
 impl Sales {
-    /// Asks the database of a run, without recording that it was asked.
+    /// Reads the database of a run without recording the queries.
     ///
     /// # Errors
-    /// The run has no database, or it cannot be read.
+    /// Returns an error if the run has no database or it cannot be read.
     pub fn of(session: &Session) -> Result<Sales, Refusal> {
         session.wait_for_database()?;
         let (connection, limits) = (session.database().open_connection()?, session.company().query_limits());
@@ -117,7 +114,7 @@ impl Sales {
         Ok(sales)
     }
 
-    /// Takes who is there: group, plan, customers, seats, dollars a month.
+    /// Adds rows of group, plan, customers, seats, dollars a month.
     pub fn take_subscribers(&mut self, rows: &Rows) {
         self.held = by_plan(rows, |row| PlanUse {
             customers: number_at(row, 2),
@@ -127,7 +124,7 @@ impl Sales {
         });
     }
 
-    /// Takes what they used: group, plan, accounts, seats, units, dollars a month.
+    /// Adds rows of group, plan, accounts, seats, units, dollars a month.
     pub fn take_usage(&mut self, rows: &Rows) {
         self.used = by_plan(rows, |row| PlanUse {
             accounts: number_at(row, 2),
@@ -138,17 +135,15 @@ impl Sales {
         });
     }
 
-    /// Whether the use of any plan is known.
     fn is_measured(&self) -> bool {
         Plan::ALL.into_iter().any(|plan| self.of_plan(plan).usage().is_some())
     }
 
-    /// All subscribers of a plan.
+    /// Returns the sum over all groups.
     pub fn of_plan(&self, plan: Plan) -> PlanUse {
         self.sum(|_, own| own == plan)
     }
 
-    /// The subscribers of a plan by group, in the order of the groups.
     fn by_group(&self, plan: Plan) -> Vec<(Group, PlanUse)> {
         let of = |group: Group| (group, self.sum(|own, of| own == group && of == plan));
         Group::all().map(of).filter(|(_, own)| own.customers > 0.0).collect()
@@ -166,37 +161,37 @@ fn by_plan(rows: &Rows, read: impl Fn(&[Cell]) -> PlanUse) -> Vec<(Group, Plan, 
     rows.rows.iter().filter_map(own).collect()
 }
 
-/// What a draft would make of a plan.
+/// Terms of a plan under a draft.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanTerms {
     /// List price, dollars a month and seat.
     pub price: f64,
     /// Model tier.
     pub tier: u8,
-    /// Units a day and account.
+    /// Quota, units a day and account.
     pub quota: f64,
 }
 
 impl PlanTerms {
-    /// What a unit costs on the model that is set; none if it is none of these.
+    /// Returns dollars a unit on the current model tier; `None` if the tier is unknown.
     fn unit_cost(&self, models: &[(u8, f64)]) -> Option<f64> {
         models.iter().find(|(tier, _)| *tier == self.tier).map(|(_, unit_cost)| *unit_cost)
     }
 }
 
-/// What a form sets, and what its margins are shown beside.
+/// Setting that a form changes, which determines the margins to show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Lever {
-    /// List prices: margins at the price, too.
+    /// List prices: also shows margins at the list price.
     Price,
     /// Model tiers.
     Tier,
-    /// Quotas: margins when they are used up, too.
+    /// Quotas: also shows margins at full quota.
     Quota,
 }
 
 impl Lever {
-    /// What a tool sets, if margins follow from it.
+    /// Returns the setting of a tool if it affects margins.
     pub fn of(tool: ToolId) -> Option<Lever> {
         match tool {
             ToolId::SetPrices => Some(Lever::Price),
@@ -206,7 +201,7 @@ impl Lever {
         }
     }
 
-    /// The terms of plans after a call of the tool with these arguments.
+    /// Returns the terms of plans after a call of the tool with these arguments.
     pub fn apply(self, mut terms: ByPlan<PlanTerms>, arguments: &Value) -> ByPlan<PlanTerms> {
         for plan in Plan::ALL {
             let Some(value) = arguments.get(plan.id()).and_then(Value::as_f64) else { continue };
@@ -221,7 +216,7 @@ impl Lever {
     }
 }
 
-/// The margins of every plan under its terms and on every other model: a head, then lines.
+/// Returns a table of margins for every plan and model tier: a header, then lines.
 pub fn margin_lines(
     sales: &Sales,
     terms: &ByPlan<PlanTerms>,
@@ -232,7 +227,7 @@ pub fn margin_lines(
     if !sales.is_measured() {
         return vec![NOTHING_MEASURED.to_owned()];
     }
-    let mut lines = vec![format!("gross margin by model tier at the use of day {day}; [ ] as set")];
+    let mut lines = vec![format!("gross margin by model tier at day-{day} usage; [ ] current")];
     let tiers: String = models.iter().map(|(tier, _)| format!("{:>8}", format!("T{tier} "))).collect();
     lines.push(format!("{:<16}{tiers}", "a month and seat").trim_end().to_owned());
     for plan in Plan::ALL {
@@ -244,7 +239,7 @@ pub fn margin_lines(
             format!("{label:<16}{cells}").trim_end().to_owned()
         };
         let Some(paid) = own.measured_revenue() else {
-            lines.push(format!("{plan} nobody used it on day {day}"));
+            lines.push(format!("{plan} no usage on day {day}"));
             continue;
         };
         lines.push(row(format!("{plan} paid {}", cents(paid)), &|unit_cost| own.margin(unit_cost)));
@@ -254,7 +249,7 @@ pub fn margin_lines(
                 lines.push(row(label, &|unit_cost| margin(set.price, own.compute(unit_cost)?)));
             }
             Lever::Quota => {
-                let label = format!("{plan} all use {}", compact(set.quota));
+                let label = format!("{plan} at quota {}", compact(set.quota));
                 lines.push(row(label, &|unit_cost| own.margin_of_full_quota(set.quota, unit_cost)));
             }
             _ => {}
@@ -264,7 +259,7 @@ pub fn margin_lines(
     lines
 }
 
-/// The margins of every plan under its terms on its own model alone, for small windows: a head, then a line a plan.
+/// Returns the margins of every plan on its own model tier, for small windows: a header, then one line per plan.
 pub fn margin_summary(
     sales: &Sales,
     terms: &ByPlan<PlanTerms>,
@@ -278,7 +273,7 @@ pub fn margin_summary(
     let line = |plan: Plan| {
         let (own, set) = (sales.of_plan(plan), terms[plan]);
         let Some(paid) = own.measured_revenue() else {
-            return format!("{plan} nobody used it on day {day}");
+            return format!("{plan} no usage on day {day}");
         };
         let unit_cost = set.unit_cost(models);
         let told = |margin: &dyn Fn(f64) -> Option<f64>| in_words(unit_cost.and_then(margin));
@@ -289,7 +284,7 @@ pub fn margin_summary(
             }
             Lever::Quota => {
                 let margin = told(&|unit_cost| own.margin_of_full_quota(set.quota, unit_cost));
-                format!(", all use {} {margin}", compact(set.quota))
+                format!(", at quota {} {margin}", compact(set.quota))
             }
             _ => String::new(),
         };
@@ -300,16 +295,16 @@ pub fn margin_summary(
             told(&|unit_cost| own.margin(unit_cost))
         )
     };
-    let head = format!("gross margin at the use of day {day}");
+    let head = format!("gross margin at day-{day} usage");
     std::iter::once(head).chain(Plan::ALL.into_iter().map(line)).collect()
 }
 
-/// Whether a list price is another one than what is paid, to the cent.
+/// Returns whether a list price differs from the price paid by at least half a cent.
 fn differs(list: f64, paid: f64) -> bool {
     list > 0.0 && (list - paid).abs() >= 0.005
 }
 
-/// The margins of a plan's groups on the model that is set; none where one group has the plan.
+/// Lists the margins of a plan's groups on its model tier; `None` if only one group has the plan.
 fn by_group(sales: &Sales, plan: Plan, set: PlanTerms, models: &[(u8, f64)]) -> Option<String> {
     let unit_cost = set.unit_cost(models)?;
     let told = |(group, own): &(Group, PlanUse)| {
@@ -323,7 +318,7 @@ fn by_group(sales: &Sales, plan: Plan, set: PlanTerms, models: &[(u8, f64)]) -> 
     })
 }
 
-/// A margin; how far below nothing it lies matters no more once the use of a plan costs ten times its price.
+/// Formats a margin. Losses above about ten times the price are all shown as `loss`.
 fn in_words(margin: Option<f64>) -> String {
     margin.map_or("–".to_owned(), |margin| match margin < -9.99 {
         true => "loss".to_owned(),
@@ -374,7 +369,7 @@ mod tests {
         let now = terms(&session.settings().core);
         let draft = Lever::Tier.apply(now, &json!({"B": 3}));
         let lines = margin_lines(&sales, &draft, Lever::Tier, &models, 42);
-        assert!(lines[0].contains("at the use of day 42"), "{lines:?}");
+        assert!(lines[0].contains("at day-42 usage"), "{lines:?}");
         let line = lines.iter().find(|line| line.starts_with("B paid ")).expect("plan B");
         let on_3 = format!("[{}]", percent(own.margin(models[2].1).expect("a margin"), 0));
         assert!(line.contains(&cents(paid)) && line.contains(&on_3), "{line} without {on_3}");
@@ -385,10 +380,10 @@ mod tests {
         assert!(line.contains(&on_2), "{line} without {on_2}");
         let full_quota = Lever::Quota.apply(now, &json!({"B": 300}));
         let lines = margin_lines(&sales, &full_quota, Lever::Quota, &models, 42);
-        let line = lines.iter().find(|line| line.starts_with("B all use 300")).expect("the quota");
+        let line = lines.iter().find(|line| line.starts_with("B at quota 300")).expect("the quota");
         let full = 1.0 - own.accounts * 300.0 / own.users * 30.0 * models[1].1 / paid;
         assert!(line.contains(&format!("[{}]", percent(full, 0))), "{line} without {full}");
-        // In small windows the margins on the own model are the same.
+        // The summary for small windows shows the same margins.
         for (lever, draft) in [(Lever::Price, &dear), (Lever::Quota, &full_quota), (Lever::Tier, &now)] {
             let lines = margin_lines(&sales, draft, lever, &models, 42);
             let set = |line: &str| Some(line.split_once('[')?.1.split_once(']')?.0.to_owned());
@@ -402,7 +397,7 @@ mod tests {
                 .filter(|word| word.ends_with('%'))
                 .collect();
             assert_eq!(told, expected, "{line}");
-            assert!(summary[0].ends_with("day 42") && summary.len() == 4, "{summary:?}");
+            assert!(summary[0].contains("day-42") && summary.len() == 4, "{summary:?}");
         }
     }
 
@@ -426,6 +421,6 @@ mod tests {
         let session = played(0);
         let sales = Sales::of(&session).expect("a database");
         let lines = margin_lines(&sales, &terms(&session.settings().core), Lever::Price, &[(1, 0.0003)], 0);
-        assert_eq!(lines, ["no margins: no use of subscribers has been measured"]);
+        assert_eq!(lines, ["no margins: usage has not been measured yet"]);
     }
 }

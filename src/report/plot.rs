@@ -1,23 +1,23 @@
-//! Lines, points and bars as text.
+//! Text charts with lines, points and bars.
 
 use unicode_width::UnicodeWidthStr;
 
 use super::words::tick;
 use novamind_base::notation::compact;
 
-/// How values are placed on an axis.
+/// Scale of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AxisScale {
-    /// Evenly.
+    /// Linear.
     Linear,
-    /// Evenly, and only whole numbers are labelled: days, weeks.
+    /// Linear, with labels at whole numbers only: days, weeks.
     Whole,
-    /// By their logarithms; values of zero and below have no place.
+    /// Logarithmic; values of zero and below are not drawn.
     Logarithmic,
 }
 
 impl AxisScale {
-    /// Its name for programs.
+    /// Returns its name in machine-readable output.
     pub fn name(self) -> &'static str {
         match self {
             AxisScale::Linear | AxisScale::Whole => "linear",
@@ -25,7 +25,7 @@ impl AxisScale {
         }
     }
 
-    /// Where a value stands on a ruler; not a number where it has no place.
+    /// Maps a value to its position on the axis; NaN if it has none.
     pub fn placed(self, value: f64) -> f64 {
         match self {
             AxisScale::Linear | AxisScale::Whole => value,
@@ -35,49 +35,46 @@ impl AxisScale {
     }
 }
 
-/// The room of a drawing.
+/// Size and axes of a text chart.
 pub struct Frame {
-    /// Letters across, labels included.
+    /// Width in characters, including labels.
     pub width: usize,
-    /// Lines without the labels below.
+    /// Height in lines, excluding the labels below.
     pub height: usize,
-    /// The axis below.
+    /// Horizontal axis.
     pub across: AxisScale,
-    /// The axis to the left.
+    /// Vertical axis.
     pub up: AxisScale,
 }
 
-/// What the drawings of reports have.
 const OF_REPORTS: Frame = Frame { width: 81, height: 14, across: AxisScale::Linear, up: AxisScale::Linear };
 
-/// Letters of the labels to the left and of the axis.
 const LABELS: usize = 11;
 
-/// Heights of a curve in one row, the lowest first.
+/// Bar heights of a sparkline, lowest first.
 pub const LEVELS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
-/// The height of a share, 0 to 1, in a curve in one row.
+/// Returns the sparkline character for a share from 0 to 1.
 pub fn level(share: f64) -> char {
     let highest = LEVELS.len() - 1;
     LEVELS[((share * highest as f64).round() as usize).min(highest)]
 }
 
-/// Something that is drawn with a sign; later ones are drawn over earlier ones.
+/// A series drawn with a character; later ones cover earlier ones.
 pub struct Drawn<'a> {
-    /// The sign.
+    /// Character.
     pub sign: char,
-    /// Where it goes.
+    /// Points.
     pub points: &'a [(f64, f64)],
-    /// Whether points are joined.
+    /// Whether the points are connected.
     pub is_line: bool,
 }
 
-/// Draws; empty where there is nothing.
 pub(super) fn plot(drawn: &[Drawn<'_>]) -> String {
     plot_in(&OF_REPORTS, drawn)
 }
 
-/// Draws in a room; empty where there is nothing.
+/// Draws series in a frame; empty without points.
 pub fn plot_in(frame: &Frame, drawn: &[Drawn<'_>]) -> String {
     let (columns, rows) = (frame.width.saturating_sub(LABELS).max(8), frame.height.max(2));
     let placed = |(x, y): &(f64, f64)| (frame.across.placed(*x), frame.up.placed(*y));
@@ -121,7 +118,7 @@ pub fn plot_in(frame: &Frame, drawn: &[Drawn<'_>]) -> String {
     text + &format!("{:>10} {}{:>width$}\n", "", compact(left), compact(right))
 }
 
-/// Bars lying under each other, each with its place before and its value behind it.
+/// Draws horizontal bars, each between its label and its value.
 pub fn bars(points: &[(f64, f64)], width: usize) -> String {
     let most = points.iter().map(|point| point.1).filter(|own| own.is_finite()).fold(0.0, f64::max);
     let (labels, values): (Vec<String>, Vec<String>) =
@@ -141,14 +138,14 @@ fn between(from: f64, to: f64, share: f64) -> f64 {
     from + (to - from) * share
 }
 
-/// From the least to the greatest value, a little apart; none where there is none.
+/// Returns the range of the values, widened if it is empty; `None` without values.
 fn reach(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let (least, most) =
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), own| (least.min(own), most.max(own)));
     let apart = most - least > 1e-9 * most.abs().max(least.abs()).min(1.0);
     (least <= most).then_some(match least {
         _ if apart => (least, most),
-        // A level above zero keeps a logarithm.
+        // Widening by a factor keeps a positive level positive for logarithms.
         level if level > 0.0 => (0.5 * level, 1.5 * level),
         level => (level - 1.0, level + 1.0),
     })
@@ -168,7 +165,7 @@ mod tests {
         assert!(rows[0].starts_with("      100 |#") && rows[0].ends_with('.'), "{text}");
         assert!(rows[OF_REPORTS.height - 1].trim_end().ends_with('#'), "{text}");
         assert_eq!(plot(&[]), "");
-        assert!(plot(&[line('.', &[(1.0, 1.0)])]).contains('.'), "one point has a place");
+        assert!(plot(&[line('.', &[(1.0, 1.0)])]).contains('.'), "a single point is drawn");
     }
 
     #[test]

@@ -1,11 +1,11 @@
-//! Leads around the day of a post: those of the week before and of the week after, by group. Counts only: which leads a post
-//! brought is in no record that a player may see.
+//! Leads by group in the week before and after a post. Only counts: visible data does not record which leads a post
+//! brought.
 
 use super::words::whole;
 use novamind_session::GroupWeek;
 use novamind_session::identifiers::{ByGroup, Group};
 
-/// Lines on the leads before and after a decision day; none before a week has run after it.
+/// Returns lines about the leads before and after a decision day; empty until a week has run after it.
 pub fn leads_around(day: u32, weeks: &[ByGroup<GroupWeek>], known: &[Group]) -> Vec<String> {
     let after = day as usize / 7;
     let Some(later) = weeks.get(after).filter(|_| day.is_multiple_of(7)) else { return Vec::new() };
@@ -20,7 +20,7 @@ pub fn leads_around(day: u32, weeks: &[ByGroup<GroupWeek>], known: &[Group]) -> 
         .collect();
     vec![
         format!("Leads in the week before → in the week after: {}", told.join(", ")),
-        "Whatever else changed in these weeks is in them, too.".to_owned(),
+        "Other changes of these weeks also affect these counts.".to_owned(),
     ]
 }
 

@@ -1,36 +1,36 @@
-//! A text that was written with the simplest marks of Markdown, for screens: headings, lists, strong words, quotes, blocks
-//! that stay as they are. Line breaks of the source are blanks; every word of it is kept.
+//! Formats text with simple Markdown for screens: headings, lists, emphasis, quotes and code blocks. Line breaks of
+//! the source become blanks; no word is lost.
 
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
-/// How a piece of a line is written.
+/// Style of a piece of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Face {
-    /// As text.
+    /// Plain text.
     Text,
-    /// Emphasised.
+    /// Emphasized.
     Strong,
     /// A heading.
     Heading,
 }
 
-/// A line of a screen, in pieces.
+/// A line of a screen, in styled pieces.
 pub type ProseLine = Vec<(String, Face)>;
 
-/// What the source consists of.
+/// An element of the source.
 #[derive(Debug, PartialEq)]
 enum Passage {
     Heading(String),
     Paragraph(String),
-    /// What stands before an item, and the item.
+    /// A list item: marker and text.
     Item(String, String),
     Quote(String),
-    /// A line that stays as it is.
+    /// A line that is copied unchanged.
     Verbatim(String),
     Blank,
 }
 
-/// The text in lines of at most so many columns.
+/// Formats text in lines of at most `width` columns.
 pub fn laid_out(text: &str, width: usize) -> Vec<ProseLine> {
     let width = width.max(1);
     let mut lines: Vec<ProseLine> = Vec::new();
@@ -59,7 +59,7 @@ pub fn laid_out(text: &str, width: usize) -> Vec<ProseLine> {
     lines
 }
 
-/// The same without any marks, in lines of at most so many columns.
+/// Formats text without styles in lines of at most `width` columns.
 pub fn as_plain(text: &str, width: usize) -> String {
     let line = |line: ProseLine| line.into_iter().map(|(piece, _)| piece).collect::<String>();
     laid_out(text, width).into_iter().map(line).collect::<Vec<_>>().join("\n")
@@ -68,7 +68,7 @@ pub fn as_plain(text: &str, width: usize) -> String {
 fn blocks(text: &str) -> Vec<Passage> {
     let mut blocks: Vec<Passage> = Vec::new();
     let mut fenced = false;
-    // The line before ended a block.
+    // Whether the line before ended a block.
     let mut ends = true;
     for line in text.lines() {
         let (bare, indent) = (line.trim(), line.len() - line.trim_start().len());
@@ -99,7 +99,7 @@ fn blocks(text: &str) -> Vec<Passage> {
                 text.push_str(&more);
             }
             (Some(block), last) => {
-                // A list, or a heading, stands apart from the text around it.
+                // Lists and headings are separated from the text around them.
                 let apart = match (last.as_deref(), &block) {
                     (None | Some(Passage::Blank), _) | (_, Passage::Blank) => false,
                     (Some(Passage::Heading(_)), _) | (_, Passage::Heading(_)) => true,
@@ -124,7 +124,7 @@ fn blocks(text: &str) -> Vec<Passage> {
     blocks
 }
 
-/// What a line begins, going by its first letters; none where it is ordinary text.
+/// Returns the element that a line starts, by its first characters; `None` for ordinary text.
 fn kind_of(bare: &str, indent: usize) -> Option<Passage> {
     if bare.is_empty() {
         return Some(Passage::Blank);
@@ -134,7 +134,7 @@ fn kind_of(bare: &str, indent: usize) -> Option<Passage> {
         return Some(Passage::Heading(text.trim().trim_end_matches('#').trim_end().to_owned()));
     }
     if bare.len() >= 3 && ["-", "*", "_", "="].iter().any(|rule| bare.replace(rule, "").trim().is_empty()) {
-        // A rule, or the line under a heading: it says nothing.
+        // A rule, or the underline of a heading, has no text.
         return Some(Passage::Blank);
     }
     if bare.starts_with('|') {
@@ -152,7 +152,7 @@ fn kind_of(bare: &str, indent: usize) -> Option<Passage> {
     numbered.map(|text| Passage::Item(format!("{margin}{}. ", &bare[..digits]), text.trim().to_owned()))
 }
 
-/// The letters of a text without its marks, each with its face.
+/// Returns the characters of a text without marks, each with its style.
 fn faced(text: &str) -> Vec<(char, Face)> {
     let letters: Vec<char> = text.chars().collect();
     let mut found = Vec::new();
@@ -179,13 +179,13 @@ fn faced(text: &str) -> Vec<(char, Face)> {
     found
 }
 
-/// The letters between two equal marks at the beginning of a text, and how many letters they take with the marks.
+/// Returns the characters between two equal marks at the start of a text, and the length including the marks.
 fn marked(rest: &[char], before: Option<char>) -> Option<(&[char], usize)> {
     const MARKS: [&[char]; 5] = [&['*', '*'], &['_', '_'], &['*'], &['_'], &['`']];
     let mark = MARKS.into_iter().find(|mark| rest.starts_with(mark))?;
     let inner = &rest[mark.len()..];
     let opens = inner.first().is_some_and(|letter| !letter.is_whitespace());
-    // A name like `filled_naively` has no mark in it.
+    // Underscores within a name like `filled_naively` are not marks.
     let in_word = mark[0] == '_' && before.is_some_and(char::is_alphanumeric);
     if !opens || in_word {
         return None;
@@ -201,8 +201,7 @@ fn marked(rest: &[char], before: Option<char>) -> Option<(&[char], usize)> {
     Some((&inner[..end], end + 2 * mark.len()))
 }
 
-/// Letters in lines, broken between words where that is possible: `first` stands before the first line, `next` before
-/// the others.
+/// Breaks characters into lines, between words if possible. `first` precedes the first line, `next` the others.
 fn filled(letters: Vec<(char, Face)>, first: &str, next: &str, width: usize) -> Vec<ProseLine> {
     let width_of =
         |word: &[(char, Face)]| word.iter().map(|(letter, _)| letter.width().unwrap_or(0)).sum::<usize>();
@@ -213,7 +212,7 @@ fn filled(letters: Vec<(char, Face)>, first: &str, next: &str, width: usize) -> 
         let row = rows.last_mut().filter(|row| !row.is_empty());
         match row {
             Some(row) if width_of(row) + 1 + width_of(word) <= room => {
-                // Between two words of a face the blank has it, too.
+                // A blank between two words of the same style has that style.
                 let face = row.last().map(|(_, face)| *face).filter(|face| *face == word[0].1);
                 row.push((' ', face.unwrap_or(Face::Text)));
                 row.extend(word);
@@ -291,7 +290,7 @@ mod tests {
             for width in 1..60 {
                 let shown = as_plain(text, width);
                 assert_eq!(bare(&shown), bare(text), "{width}: {shown}");
-                // A mark of a list and one letter of two columns are the least there can be.
+                // The minimum width is a list marker and one double-width character.
                 let widest = shown.lines().map(UnicodeWidthStr::width).max().unwrap_or(0);
                 assert!(widest <= width.max(6), "{width}: {shown}");
             }

@@ -1,5 +1,5 @@
-//! The protocol of a study in words, ready to be preregistered: everything in it is computed from the study, the
-//! parameters in force and the columns of the tables.
+//! The protocol of a study as a document for preregistration, computed from the study, its parameters and the columns
+//! of the tables.
 
 use crate::tables::headings;
 use novamind_base::notation::{dollars, grouped};
@@ -12,10 +12,10 @@ use novamind_study::{
     lab_public_key_of,
 };
 
-/// The protocol as Markdown.
+/// Returns the protocol as Markdown.
 ///
 /// # Errors
-/// The scenario of the session or the practice cannot be read.
+/// Returns an error if the scenario of the session or the practice cannot be read.
 pub fn protocol(study: &Study, configuration: &Configuration) -> Result<String, RunError> {
     let chapters = [
         heading(study),
@@ -74,7 +74,7 @@ fn world(study: &Study, configuration: &Configuration) -> Result<String, RunErro
     }
     if let Some(model) = &protocol.voice {
         text += &format!(
-            "- Language model: {}; a week waits for it at most {} seconds, then the built-in voice speaks.\n",
+            "- Language model: {}; a week waits at most {} seconds for it, then uses the built-in voice.\n",
             model.stamp().in_words(),
             model.seconds_a_week
         );
@@ -87,7 +87,7 @@ fn participants(study: &Study) -> String {
     let listed = |numbers: &[u64]| numbers.iter().map(u64::to_string).collect::<Vec<_>>().join(", ");
     let plan = match seeds.plan {
         SeedPlan::One => {
-            format!("Everybody plays seed {}.", listed(&seeds.seed.into_iter().collect::<Vec<_>>()))
+            format!("All participants play seed {}.", listed(&seeds.seed.into_iter().collect::<Vec<_>>()))
         }
         SeedPlan::Blocks => format!(
             "Each block of participants plays every seed of {}, in random order.",
@@ -98,18 +98,18 @@ fn participants(study: &Study) -> String {
     let conditions = match seeds.conditions.as_slice() {
         [] => String::new(),
         some => format!(
-            " Conditions: {}. They label and balance participants; the program is the same under all of them, so what \
-             differs between them happens outside of it.",
+            " Conditions: {}. They label and balance participants. The program is the same under all of them; \
+             differences between them are outside of it.",
             some.join(", ")
         ),
     };
-    let places = study.assignment.as_ref().map_or("Any label is taken.".to_owned(), |assignment| {
+    let places = study.assignment.as_ref().map_or("Any label is accepted.".to_owned(), |assignment| {
         format!("{} labels are assigned{}.", assignment.places.len(), drawn(study, assignment))
     });
     format!("## Participants\n\n{places} {plan}{conditions} Participants do not see seeds.\n")
 }
 
-/// How the assignment came about, as far as it can be computed again, and its digest.
+/// Describes how the assignment was drawn, as far as it can be reproduced, and its digest.
 fn drawn(study: &Study, assignment: &Assignment) -> String {
     let seeds = &study.protocol.seeds;
     let labels: Vec<String> = assignment.places.iter().map(|place| place.label.clone()).collect();
@@ -126,17 +126,17 @@ fn drawn(study: &Study, assignment: &Assignment) -> String {
 }
 
 fn procedure(study: &Study) -> String {
-    let mut steps = vec!["Label. Labels that are not assigned are refused and counted."];
+    let mut steps = vec!["Label. Labels that are not assigned are rejected and counted."];
     if study.consent.is_some() {
-        steps.push("Consent, to the text below. Whoever declines leaves no run; the label and the refusal stay in the list of visits.");
+        steps.push("Consent to the text below. If a participant declines, no run is created; the list of visits keeps the label and the refusal.");
     }
     match study.protocol.practice.offer {
         PracticeOffer::None => {}
         PracticeOffer::Required => steps.push("Practice, to its end."),
-        PracticeOffer::Optional => steps.push("Practice, or passing it over."),
+        PracticeOffer::Optional => steps.push("Practice, which can be skipped."),
     }
-    steps.push("Session. It can be left and taken up again; the record tells when.");
-    steps.push("Questions, where they are due.");
+    steps.push("Session. It can be interrupted and resumed; the record shows when.");
+    steps.push("Questions, when they are due.");
     let lines: Vec<String> =
         steps.iter().enumerate().map(|(at, step)| format!("{}. {step}\n", at + 1)).collect();
     format!(
@@ -149,9 +149,9 @@ fn rules(study: &Study) -> String {
     let rules = study.rules();
     let yes = |on: bool| if on { "yes" } else { "no" };
     let results = match rules.results {
-        ResultsShown::None => "that the run is over",
+        ResultsShown::None => "that the run has ended",
         ResultsShown::Own => "the participant's own result",
-        ResultsShown::Published => "the participant's own result beside published ones",
+        ResultsShown::Published => "the participant's own result and published ones",
     };
     let texts = match rules.free_text {
         FreeText::Kept => "kept",
@@ -160,41 +160,40 @@ fn rules(study: &Study) -> String {
     let drafts = match rules.drafts {
         DraftsKept::None => "not recorded",
         DraftsKept::Lengths => "lengths, pauses, deletions and pasted characters",
-        DraftsKept::Text => "as lengths, and the text that was left",
+        DraftsKept::Text => "as lengths, and the text that was not submitted",
     };
     let mut text = format!(
-        "## Rules of the session\n\nThe practice is played by the same rules, limits of time among them.\n\n\
+        "## Rules of the session\n\nThe practice uses the same rules and time limits.\n\n\
          | Rule | |\n|---|---|\n\
          | Alerts recommend amounts | {} |\n\
-         | Participants see a summary of how their forecasts have done while they make new ones | {} |\n\
+         | Participants see a summary of past forecasts while they make new ones | {} |\n\
          | The final page shows | {results} |\n\
          | Texts of notes and answers | {texts} |\n\
-         | Texts that were edited | {drafts} |\n\
-         | Lines that are left out | {} |\n",
+         | Edits of texts | {drafts} |\n\
+         | Unrecorded lines | {} |\n",
         yes(rules.advice),
         match rules.calibration {
             true => "yes",
             false =>
-                "no; single forecasts and what came stand in the week report and on the Cash and Journal screens",
+                "no; the week report and the Cash and Journal screens show single forecasts with their outcomes",
         },
         if rules.unrecorded.is_empty() { "none".to_owned() } else { rules.unrecorded.join(", ") },
     );
     if study.protocol.practice.offer != PracticeOffer::None {
         text += &format!(
-            "| The practice begins with the tour (console) | {} |\n",
+            "| The practice starts with the tour (console) | {} |\n",
             yes(study.protocol.session.tour)
         );
     }
-    text += &format!("| Whoever stops the clock is asked why | {} |\n", yes(rules.pause_reason));
+    text += &format!("| Stopping the clock asks for a reason | {} |\n", yes(rules.pause_reason));
     text + &limits(&rules.limits)
 }
 
-/// The rows about limits of time.
 fn limits(limits: &TimeLimits) -> String {
     let all = [
         ("Active minutes per week of the company", limits.week_minutes),
-        ("Active minutes per sitting", limits.session_minutes),
-        ("Active minutes per run, all sittings together", limits.study_minutes),
+        ("Active minutes per session", limits.session_minutes),
+        ("Active minutes per run, over all sessions", limits.study_minutes),
     ];
     let minutes = |own: Option<u32>, none: &str| own.map_or(none.to_owned(), |own| own.to_string());
     let row = |(what, own): (&str, Option<u32>)| format!("| {what} | {} |\n", minutes(own, "no limit"));
@@ -205,7 +204,7 @@ fn limits(limits: &TimeLimits) -> String {
     let at_limit = match limits.at_limit {
         AtLimit::Remind => "the participant is reminded, once",
         AtLimit::Naive => {
-            "of a week: it is filed with the naive projection; of a sitting or run: the clock is stopped until the experimenter \
+            "of a week: it is filed with naive forecasts; of a session or run: the clock is stopped until the experimenter \
              starts it"
         }
         AtLimit::Pause => "the clock is stopped until the experimenter starts it",
@@ -216,16 +215,15 @@ fn limits(limits: &TimeLimits) -> String {
     )
 }
 
-/// The classes of time, with the thresholds in force.
 fn time() -> String {
     format!(
         "## Time\n\n\
-         - Active: the run is open and in front, its clock runs, no question of the study is open, and the person is not idle.\n\
+         - Active: the run is open and in front, its clock runs, no question of the study is open, and the participant is not idle.\n\
          - Answering: the same, while a question of the study is open.\n\
-         - Idle: in the console, from the last key, once {} s have passed without one. Plain mode does not see keys: there, a gap \
+         - Idle: in the console, from the last key if no other follows within {} s. Plain mode does not receive keys; there, a gap \
          of more than {} s between two lines is idle.\n\
          - Away: the run is closed, suspended or in the background, or its clock is stopped.\n\
-         - The days that the program simulates are none of these.\n\
+         - Simulation time belongs to none of these classes.\n\
          - A week decided in less than {} active seconds counts as implausibly fast.\n\
          - Limits count active time.\n",
         IDLE_AFTER.as_secs(),
@@ -242,7 +240,7 @@ fn questions(study: &Study) -> String {
     for own in &study.questionnaires {
         text += &format!("\n**{}** ({})\n\n", own.title, when(own));
         for question in &own.questions {
-            let required = if question.required { ", required" } else { ", may be passed over" };
+            let required = if question.required { ", required" } else { ", optional" };
             text += &format!("- `{}`: {} ({}{required})\n", question.id, question.text, form(&question.form));
         }
     }
@@ -257,7 +255,8 @@ fn when(own: &Questionnaire) -> String {
             format!("after weeks {}", weeks.join(", "))
         }
         Moment::Break => {
-            "whenever the participant takes up the run again or starts the clock again, however short the break".to_owned()
+            "whenever the participant resumes the run or restarts the clock, even after a short break"
+                .to_owned()
         }
         Moment::End => "at the end".to_owned(),
     }
@@ -272,17 +271,17 @@ fn form(form: &Form) -> String {
             format!("a number from {} to {} {unit}", end(min), end(max)).trim_end().to_owned()
         }
         Form::Choice { options, several } => {
-            format!("{} of: {}", if *several { "some" } else { "one" }, options.join(" / "))
+            format!("{} of: {}", if *several { "any" } else { "one" }, options.join(" / "))
         }
         Form::Text { most } => format!("text, at most {most} characters"),
         Form::Attention { options, expected } => format!("check: {expected} of {}", options.join(" / ")),
     }
 }
 
-/// Every column of every table with its definition: the measures are defined once, where they are computed.
+/// Returns the definition of every column of every table. Measures are defined where they are computed.
 fn measures() -> String {
     let mut text =
-        "## Measures\n\nComputed by the program; `columns.csv` goes out with the tables.\n".to_owned();
+        "## Measures\n\nComputed by the program; `columns.csv` is exported with the tables.\n".to_owned();
     for (table, columns) in headings() {
         text += &format!("\n### {table}\n\n| Column | Unit | Definition |\n|---|---|---|\n");
         for column in columns {
@@ -297,10 +296,10 @@ fn exclusion() -> String {
     let of_sessions = AuditKind::ALL.iter().filter(|kind| **kind != AuditKind::NothingExamined);
     let grave: Vec<&str> = of_sessions.map(|kind| kind.title()).collect();
     format!(
-        "## Exclusion\n\nBefore any result is looked at, `novamind study audit` is run. It reads the records alone: a run \
-         whose lines were rewritten with correct hashes, or that was continued in a copy of its folder, stays unnoticed. A \
-         session with one of these findings, or named in one, is excluded, and reported as excluded: {}. To be decided before the first session: the number of failed \
-         attention checks, of naive weeks and of weeks decided in less than ten active seconds from which a session is excluded.\n",
+        "## Exclusion\n\nRun `novamind study audit` before inspecting any result. It reads only the records: it cannot detect a run \
+         whose lines were rewritten with correct hashes, or that was continued in a copy of its folder. A \
+         session with one of these findings, or named in one, is excluded, and reported as excluded: {}. Decide before the first session: the number of failed \
+         attention checks, of naive weeks and of weeks decided in less than ten active seconds at which a session is excluded.\n",
         grave.join(", ")
     )
 }
@@ -310,7 +309,7 @@ fn checklist(study: &Study) -> String {
         "`novamind study check` on every machine.".to_owned(),
         format!("The digest on every machine is {}.", &study.digest[..16]),
         "Labels handed out once each.".to_owned(),
-        "`novamind study watch` while people play; remarks noted with `--note`.".to_owned(),
+        "`novamind study watch` during sessions; remarks recorded with `--note`.".to_owned(),
         "`novamind study collect` and `novamind study audit` at the end of each day.".to_owned(),
     ];
     let lines: Vec<String> = points.iter().map(|point| format!("- [ ] {point}\n")).collect();

@@ -1,4 +1,4 @@
-//! A result beside those that were published.
+//! A run's result compared with the published results.
 
 use std::cmp::Ordering;
 use std::sync::OnceLock;
@@ -9,18 +9,18 @@ use super::comparable::{Obstacle, PUBLISHED_DAYS, PUBLISHED_SEED, RunTerms, obst
 use super::words::dollar_tick;
 use novamind_session::Observation;
 
-/// Published results (read once).
+/// The published results, read from a bundled file.
 #[derive(Debug, Deserialize)]
 pub struct Published {
-    /// Where they come from.
+    /// Source of the results.
     pub source: String,
     /// Cash on day 0, dollars.
     pub start_cash: f64,
     /// Cash of the rule-based policy, dollars.
     pub rule_based_baseline: f64,
-    /// What a perfect player might reach, dollars.
+    /// Estimated cash of a perfect player, dollars.
     pub estimated_upper_bound: f64,
-    /// Share of ad spend that falls on the best channel by chance.
+    /// Share of advertising that reaches the best channel with random spending.
     pub best_channel_random_share: f64,
     /// Results of agents.
     pub agent: Vec<Agent>,
@@ -31,83 +31,83 @@ pub struct Published {
 pub struct Agent {
     /// Model.
     pub name: String,
-    /// Runs that ended with cash below zero.
+    /// Number of runs that ended with cash below zero.
     pub bankruptcies: u32,
-    /// Runs.
+    /// Number of runs.
     pub runs: u32,
     /// Cash of the best run, dollars.
     pub best_cash: f64,
-    /// Longest life of a run, days.
+    /// Longest survival of a run, days.
     pub max_survival_days: f64,
-    /// Mean life of a run, days.
+    /// Mean survival of a run, days.
     pub mean_survival_days: f64,
-    /// Standard deviation of the lives over all runs, days; of all of them, not of a sample.
+    /// Population standard deviation of survival over all runs, days.
     pub std_survival_days: f64,
-    /// Turns of the agent in a week.
+    /// Turns of the agent per week.
     pub turns_per_week: f64,
-    /// Targeted share of development spend, where it was published.
+    /// Targeted share of development spending, if published.
     #[serde(default)]
     pub targeted_development_share: Option<f64>,
 }
 
-/// The published results.
+/// Returns the published results.
 pub fn published() -> &'static Published {
     static READ: OnceLock<Published> = OnceLock::new();
     READ.get_or_init(|| {
         toml::from_str(include_str!("../../assets/paper-results.toml"))
-            .expect("a test reads the shipped results")
+            .expect("the bundled results are valid")
     })
 }
 
-/// Whose result it is.
+/// Origin of a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Whose {
-    /// A published agent's best of three runs.
+    /// Best of three runs of a published agent.
     Agent,
-    /// The published rule-based company.
+    /// The published rule-based baseline.
     Baseline,
-    /// This run's.
+    /// This run.
     Own,
 }
 
-/// A result.
+/// A result with its origin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RankedRun {
     /// Name.
     pub name: String,
     /// Cash at the end, dollars.
     pub cash: f64,
-    /// Whose.
+    /// Origin.
     pub whose: Whose,
 }
 
 /// All results, the best first.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Standing {
-    /// Results; this run's is among them once it has a score that can be compared.
+    /// Results, including this run's if it has a comparable score.
     pub places: Vec<RankedRun>,
-    /// Place of this run, from 1.
+    /// Rank of this run, from 1.
     pub rank: Option<usize>,
-    /// What keeps this run from being ranked; nothing where it is, or will be once it has a score.
+    /// Reasons not to rank this run; empty if it is ranked, or will be when it has a score.
     pub obstacles: Vec<Obstacle>,
-    /// What the published runs began with, where this one had other luck.
+    /// Terms of the published runs, if this run has a different seed.
     pub caveat: Option<String>,
-    /// Where the published results come from.
+    /// Source of the published results.
     pub source: String,
 }
 
 impl Standing {
-    /// The best places and those around this run's: enough to see where it stands.
+    /// Returns the best results and those around this run's.
     pub fn around(&self, best: usize, beside: usize) -> Vec<&RankedRun> {
         let own = self.places.iter().position(|place| place.whose == Whose::Own);
         let wanted = |at: usize| at < best || own.is_some_and(|own| own.abs_diff(at) <= beside);
         self.places.iter().enumerate().filter(|(at, _)| wanted(*at)).map(|(_, place)| place).collect()
     }
 
-    /// The rank in words.
+    /// Describes the rank.
     pub fn in_words(&self) -> String {
         match self.rank {
-            Some(rank) => format!("rank {rank} of {} beside the published results", self.places.len()),
+            Some(rank) => format!("rank {rank} of {} among the published results", self.places.len()),
             None if !self.obstacles.is_empty() => {
                 format!("not ranked: {}", obstacles_in_words(&self.obstacles))
             }
@@ -116,7 +116,7 @@ impl Standing {
     }
 }
 
-/// Where a score stands; of equal results the published ones come first.
+/// Ranks a score among the published results; in ties, published results come first.
 pub fn standing(score: Option<f64>, seen: &Observation) -> Standing {
     let place = |name: &str, cash: f64, whose: Whose| RankedRun { name: name.to_owned(), cash, whose };
     let mut places: Vec<RankedRun> =
@@ -130,25 +130,24 @@ pub fn standing(score: Option<f64>, seen: &Observation) -> Standing {
     Standing { places, rank, obstacles, caveat: caveat(seen), source: published().source.clone() }
 }
 
-/// Of two results the better one is greater: more cash at the end, and of equal ones the longer life. So the published
-/// tables choose the best run of an agent; a bankrupt company ends with nothing.
+/// Compares two results of cash and days survived: more cash is greater, then longer survival. The published tables
+/// choose an agent's best run this way; a bankrupt company has no cash.
 pub fn by_result(one: (f64, u32), other: (f64, u32)) -> Ordering {
     one.0.total_cmp(&other.0).then(one.1.cmp(&other.1))
 }
 
-/// How many of the published best runs ended with less cash, and how many there are.
+/// Returns how many of the published best runs ended with less cash, and how many there are.
 pub fn beaten(cash: f64) -> (usize, usize) {
     let agents = &published().agent;
     (agents.iter().filter(|agent| agent.best_cash < cash).count(), agents.len())
 }
 
-/// Range of the published targeted shares of development spend: the lowest, the highest.
+/// Returns the lowest and the highest published targeted share of development spending.
 pub fn published_targeted_shares() -> (f64, f64) {
     let shares = published().agent.iter().filter_map(|agent| agent.targeted_development_share);
     shares.fold((1.0, 0.0), |(least, most), share| (f64::min(least, share), f64::max(most, share)))
 }
 
-/// What the published runs are, and the luck of this one where it is another.
 fn caveat(seen: &Observation) -> Option<String> {
     let own = match seen.seed {
         Some(PUBLISHED_SEED) => return None,
@@ -158,7 +157,7 @@ fn caveat(seen: &Observation) -> Option<String> {
     Some(format!("{}; this run: {own}.", published_terms()))
 }
 
-/// What the published runs are, without a full stop.
+/// Describes the terms of the published runs, without a full stop.
 pub fn published_terms() -> String {
     let start = dollar_tick(published().start_cash);
     format!("Published: seed {PUBLISHED_SEED}, {PUBLISHED_DAYS} days, {start} at the start")
@@ -179,15 +178,15 @@ mod tests {
         assert_eq!(seen.scenario, "default");
         let good = standing(Some(14_208_331.0), &seen);
         assert_eq!((good.rank, good.caveat.clone()), (Some(2), None));
-        assert_eq!(good.in_words(), "rank 2 of 18 beside the published results");
+        assert_eq!(good.in_words(), "rank 2 of 18 among the published results");
         let names: Vec<&str> = good.around(1, 1).iter().map(|place| place.name.as_str()).collect();
         assert_eq!(names, ["Rule-based baseline", "You", "Claude Fable 5"]);
         let ruined = standing(Some(0.0), &seen);
-        assert_eq!(ruined.rank, Some(14), "four published agents have nothing either");
+        assert_eq!(ruined.rank, Some(14), "four published agents also have no cash");
         assert_eq!(ruined.places.last().map(|place| place.whose), Some(Whose::Own));
         assert_eq!(standing(None, &seen).rank, None);
         seen.seed = Some(7);
-        assert_eq!(standing(Some(0.0), &seen).rank, Some(14), "other luck is no other game");
+        assert_eq!(standing(Some(0.0), &seen).rank, Some(14), "a different seed stays comparable");
         assert!(published_targeted_shares().0 < published_targeted_shares().1);
     }
 

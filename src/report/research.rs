@@ -1,16 +1,16 @@
-//! R&D in words: what a project can be expected to take and to gain before it is paid for, and which ones come too late.
+//! Text for R&D projects: expected duration and gain before purchase, and projects that finish too late.
 
 use serde_json::Value;
 
 use novamind_base::notation::grouped;
 use novamind_session::{LateProject, Observation, ResearchMeans, ResearchOutlook, ResearchSpread};
 
-/// Lines on a project before it is started, the first one on time.
+/// Returns lines about a project before it is started: duration first, then gain.
 pub fn outlook_lines(outlook: &ResearchOutlook) -> Vec<String> {
     let ResearchOutlook { earliest, last_day, spread, .. } = outlook;
     if earliest > last_day {
         return vec![format!(
-            "no project started now is done before day {earliest}, after the last day ({last_day})"
+            "no project started now can finish before day {earliest}, after the last day ({last_day})"
         )];
     }
     let Some(spread) = spread else { return Vec::new() };
@@ -19,17 +19,20 @@ pub fn outlook_lines(outlook: &ResearchOutlook) -> Vec<String> {
 
 fn time_in_words(spread: &ResearchSpread, earliest: u32, last_day: u32) -> String {
     let [quarter, half, three_quarters] = spread.quartile_days;
-    let by_the_end = format!("done by the last day ({last_day}) in {}", of_100(spread.by_last_day));
+    let by_the_end = format!("{} by the last day ({last_day})", of_100(spread.by_last_day));
     if quarter > earliest {
-        return format!("half finish between day {quarter} and {three_quarters}; {by_the_end}");
+        return format!(
+            "half of all projects finish between day {quarter} and {three_quarters}; {by_the_end}"
+        );
     }
-    // The floor of the duration swallows the low end.
-    let mut parts = vec![format!("{} finish on day {earliest}, the earliest", of_100(spread.at_earliest))];
+    // The minimum duration hides the lower quartiles.
+    let mut parts =
+        vec![format!("{} chance of finishing on day {earliest}, the earliest", of_100(spread.at_earliest))];
     if half > earliest {
-        parts.push(format!("half by day {half}"));
+        parts.push(format!("50% by day {half}"));
     }
     if three_quarters > earliest {
-        parts.push(format!("three quarters by day {three_quarters}"));
+        parts.push(format!("75% by day {three_quarters}"));
     }
     format!("{}; {by_the_end}", parts.join(", "))
 }
@@ -37,32 +40,32 @@ fn time_in_words(spread: &ResearchSpread, earliest: u32, last_day: u32) -> Strin
 fn gain_in_words(spread: &ResearchSpread) -> String {
     let [quarter, _, three_quarters] = spread.quartile_gains;
     let least = match of_100(spread.at_least_gain).as_str() {
-        "fewer than 1 of 100" => String::new(),
-        share => format!("; the least, {:+}, in {share}", spread.least_gain),
+        "less than 1%" => String::new(),
+        share => format!("; {share} gain the minimum, {:+}", spread.least_gain),
     };
-    format!("half gain between {quarter:+.4} and {three_quarters:+.4} quality{least}")
+    format!("half of all projects gain between {quarter:+.4} and {three_quarters:+.4} quality{least}")
 }
 
-/// A share as a count of a hundred: `62 of 100`.
+/// Formats a share as a whole percentage: `62%`.
 fn of_100(share: f64) -> String {
     match (share * 100.0).round() {
-        0.0 => "fewer than 1 of 100".to_owned(),
-        100.0 if share < 1.0 => "more than 99 of 100".to_owned(),
-        count => format!("{count} of 100"),
+        0.0 => "less than 1%".to_owned(),
+        100.0 if share < 1.0 => "more than 99%".to_owned(),
+        count => format!("{count}%"),
     }
 }
 
-/// Mean duration of a tier in whole days: `39`, or `≥30` if only a lower bound is known.
+/// Formats the mean duration of a tier in whole days: `39`, or `≥30` if only a lower bound is known.
 pub fn mean_days(means: &ResearchMeans) -> String {
     format!("{}{}", if means.are_lower_bounds { "≥" } else { "" }, grouped(means.days, 0))
 }
 
-/// Mean gain of a tier in quality: `+0.0402`, or `≥0.0400` if only a lower bound is known.
+/// Formats the mean gain of a tier in quality: `+0.0402`, or `≥0.0400` if only a lower bound is known.
 pub fn mean_gain(means: &ResearchMeans, decimals: usize) -> String {
     format!("{}{:.decimals$}", if means.are_lower_bounds { "≥" } else { "+" }, means.gain)
 }
 
-/// What `list_research_projects` answers, as people are shown it: means with the least duration and gain applied.
+/// Returns the answer of `list_research_projects` for display: means that include the minimum duration and gain.
 pub fn projects_with_means(answer: &Value, means: &[ResearchMeans]) -> Value {
     let mut shown = answer.clone();
     let tiers = shown.get_mut("tiers").and_then(Value::as_array_mut).into_iter().flatten();
@@ -73,16 +76,16 @@ pub fn projects_with_means(answer: &Value, means: &[ResearchMeans]) -> Value {
     shown
 }
 
-/// A line for each project that was started since the last week and runs beyond the last day.
+/// Returns a line for each project that was started since the last week and finishes after the last day.
 pub fn late_lines(seen: &Observation) -> Vec<String> {
     let new = seen.late_projects.iter().filter(|project| project.is_new);
     let line = |project: &LateProject| late_in_words(&project.id, project.due_day, seen.last_day);
     new.map(line).collect()
 }
 
-/// That a project runs beyond the last day.
+/// States that a project finishes after the last day.
 pub fn late_in_words(project: &str, due_day: u32, last_day: u32) -> String {
-    format!("R&D project {project} is done on day {due_day}, after the last day ({last_day})")
+    format!("R&D project {project} finishes on day {due_day}, after the last day ({last_day})")
 }
 
 #[cfg(test)]
@@ -115,21 +118,21 @@ mod tests {
         assert_eq!(
             told(1),
             [
-                "94 of 100 finish on day 30, the earliest; done by the last day (500) in 100 of 100",
-                "half gain between +0.0265 and +0.0535 quality; the least, +0.001, in 3 of 100",
+                "94% chance of finishing on day 30, the earliest; 100% by the last day (500)",
+                "half of all projects gain between +0.0265 and +0.0535 quality; 3% gain the minimum, +0.001",
             ]
         );
         assert_eq!(
             told(9)[0],
-            "32 of 100 finish on day 30, the earliest, half by day 102, three quarters by day 204; done by the \
-             last day (500) in more than 99 of 100"
+            "32% chance of finishing on day 30, the earliest, 50% by day 102, 75% by day 204; more than 99% by the \
+             last day (500)"
         );
         assert_eq!(
             told(20),
             [
-                "35 of 100 finish on day 30, the earliest, half by day 466, three quarters by day 1222; done by \
-                 the last day (500) in 51 of 100",
-                "half gain between +3.6833 and +12.3167 quality; the least, +0.001, in 11 of 100",
+                "35% chance of finishing on day 30, the earliest, 50% by day 466, 75% by day 1222; 51% by \
+                 the last day (500)",
+                "half of all projects gain between +3.6833 and +12.3167 quality; 11% gain the minimum, +0.001",
             ]
         );
     }
@@ -153,7 +156,7 @@ mod tests {
             projects_with_means(&answer, &session.company().research_means()),
             json!({"tiers": [{"tier": 1, "mean_days": "30", "mean_quality_boost": "+0.0402"}]})
         );
-        // Agents are not told the spread.
+        // Agents receive the means without the spread.
         assert_eq!(
             told(Mode::Baseline),
             [
@@ -169,7 +172,7 @@ mod tests {
     fn a_run_that_is_too_short_says_so_and_a_late_project_is_named() {
         let session = run(28, Mode::Sandbox);
         let told = outlook_lines(&session.company().research_outlook(2));
-        assert_eq!(told, ["no project started now is done before day 30, after the last day (28)"]);
+        assert_eq!(told, ["no project started now can finish before day 30, after the last day (28)"]);
         let mut session = run(200, Mode::Sandbox);
         for tier in 12..=20 {
             let _ = session.call("start_research_project", &json!({ "tier": tier }), Via::Script);
@@ -179,7 +182,7 @@ mod tests {
         assert!(!seen.late_projects.is_empty() && seen.late_projects.iter().all(due));
         let first = &seen.late_projects[0];
         let words =
-            format!("R&D project {} is done on day {}, after the last day (200)", first.id, first.due_day);
+            format!("R&D project {} finishes on day {}, after the last day (200)", first.id, first.due_day);
         assert_eq!(late_lines(&seen)[0], words);
     }
 }

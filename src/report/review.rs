@@ -1,11 +1,10 @@
-//! What the decisions of a week cost, before it runs: commitments by day and week, one-time costs apart, and how long
-//! cash lasts at that.
+//! Costs of the decisions before a week runs: commitments by day and week, one-time costs, and the resulting runway.
 
 use super::words::{count, money};
 use novamind_base::notation::{dollars, price_to_cents, signed_dollars};
 use novamind_session::{AlikePlans, Observation, Preview};
 
-/// Lines on the money of a company before its next week.
+/// Returns lines about the company's money before its next week.
 pub fn money_lines(seen: &Observation) -> Vec<String> {
     let (pace, now) = (seen.pace, seen.pace.committed);
     let change = now - seen.committed_before;
@@ -35,14 +34,14 @@ pub fn money_lines(seen: &Observation) -> Vec<String> {
         }
     };
     let runway = match seen.weeks_of_cash() {
-        Some(weeks) => format!("at this pace cash lasts {}", count(weeks, "week")),
-        None => "at this pace cash lasts to the last day".to_owned(),
+        Some(weeks) => format!("at this rate, cash lasts {}", count(weeks, "week")),
+        None => "at this rate, cash lasts to the last day".to_owned(),
     };
     lines.push(format!("{income}; {runway}"));
     lines
 }
 
-/// A line for each pair of plans that differ in nothing but price.
+/// Returns a line for each pair of plans that differ only in price.
 pub fn alike_lines(seen: &Observation) -> Vec<String> {
     seen.alike_plans.iter().map(alike_in_words).collect()
 }
@@ -52,17 +51,17 @@ fn alike_in_words(plans: &AlikePlans) -> String {
     let since = if plans.before { "still" } else { "now" };
     let (low, high) = (price_to_cents(plans.cheap_price), price_to_cents(plans.dear_price));
     if low == high {
-        return format!("{cheap} and {dear} {since} differ in nothing: both cost {low}");
+        return format!("{cheap} and {dear} are {since} identical: both cost {low}");
     }
     let payers = match plans.subscribers {
-        0 => format!("nobody has {dear}"),
+        0 => format!("no one has {dear}"),
         1 => format!("1 subscriber has {dear}"),
         more => format!("{} have {dear}", count(more, "subscriber")),
     };
-    format!("{cheap} and {dear} {since} differ in nothing but price ({low} against {high}); {payers}")
+    format!("{cheap} and {dear} {since} differ only in price ({low} and {high}); {payers}")
 }
 
-/// What a call costs and from when it acts, in a line; none where there is nothing to say.
+/// Describes the cost of a call and when it takes effect; `None` if there is nothing to report.
 pub fn terms_line(preview: &Preview) -> Option<String> {
     let parts = [
         (preview.cost_now > 0.0).then(|| format!("costs {} at once", dollars(preview.cost_now))),
@@ -100,7 +99,7 @@ mod tests {
             [
                 "Committed: $5,585 a day = $39,095 a week",
                 "One-time costs since the last week: $25,000",
-                "No income yet; at this pace cash lasts 24 weeks",
+                "No income yet; at this rate, cash lasts 24 weeks",
             ]
         );
         let played = test_kit::played(3);
@@ -122,20 +121,14 @@ mod tests {
         let on_b = number_at(&session.query(sql).expect("a count").rows[0], 0);
         let payers = format!("{} have B", count(on_b as u32, "subscriber"));
         assert!(on_b > 1.0, "{payers}");
-        let told = format!("A and B now differ in nothing but price ($12 against $22); {payers}");
+        let told = format!("A and B now differ only in price ($12 and $22); {payers}");
         assert_eq!(alike_lines(&session.company().observe()), [told]);
-        // Which of them is dearer follows from the prices, not from their letters.
+        // The more expensive plan is determined by price, not by letter.
         call(&mut session, "set_prices", json!({"A": 30.5}));
         let turned = alike_lines(&session.company().observe());
-        assert!(
-            turned[0].starts_with("B and A now differ in nothing but price ($22 against $30.50); "),
-            "{turned:?}"
-        );
+        assert!(turned[0].starts_with("B and A now differ only in price ($22 and $30.50); "), "{turned:?}");
         call(&mut session, "set_prices", json!({"A": 22}));
-        assert_eq!(
-            alike_lines(&session.company().observe()),
-            ["A and B now differ in nothing: both cost $22"]
-        );
+        assert_eq!(alike_lines(&session.company().observe()), ["A and B are now identical: both cost $22"]);
         call(&mut session, "set_prices", json!({"A": 12}));
         session
             .advance_given(

@@ -1,4 +1,4 @@
-//! A run as a document: what came of it, how it went, what was decided, how it was played.
+//! Data of a run report: result, course, decisions and behavior.
 
 use super::books::Books;
 use super::chapters::{Chapter, chapters};
@@ -12,23 +12,22 @@ use novamind_record::rules::{ResultsShown, SessionRules};
 use novamind_record::trajectory::record::Ended;
 use novamind_session::{Observation, ScoredForecast, Session, filed_forecasts};
 
-/// How a company went under.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ruin {
     /// Day on which cash fell below zero.
     pub day: u32,
-    /// What the money went to, the dearest first.
+    /// Costs by kind, highest first.
     pub costs: Vec<Cost>,
-    /// When things turned, in sentences.
+    /// Sentences about the turning points.
     pub turned: Vec<String>,
 }
 
-/// A run as a document.
+/// Data of a run report.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Story {
-    /// The run at a glance.
+    /// Current state of the run.
     pub seen: Observation,
-    /// Version that recorded it.
+    /// Program version that recorded it.
     pub version: String,
     /// Cash on day 0, dollars.
     pub start_cash: f64,
@@ -36,28 +35,28 @@ pub struct Story {
     pub cash_by_day: Vec<f64>,
     /// Figures of every week.
     pub weeks: Vec<WeekFigures>,
-    /// Where the result stands.
+    /// Comparison with the published results.
     pub standing: Standing,
     /// Every forecast, in the order of filing.
     pub filed: Vec<ScoredForecast>,
-    /// What the database knows.
+    /// Data from the run's tables.
     pub books: Books,
-    /// What was decided.
+    /// Decisions by chapter.
     pub chapters: Vec<Chapter>,
-    /// Days worth remembering.
+    /// Notable days.
     pub highlights: Vec<Highlight>,
-    /// How it was played.
+    /// Behavior measures.
     pub measures: Measures,
-    /// How it went under, if it did.
+    /// Analysis of the bankruptcy, if there was one.
     pub ruin: Option<Ruin>,
-    /// By which rules it is played.
+    /// Rules of the session.
     pub rules: SessionRules,
-    /// Where it came from, if it is a branch.
+    /// Origin of the run if it is a branch.
     pub origin: Option<BranchOrigin>,
 }
 
 impl Story {
-    /// The story of a run so far. Asks the database: not for the thread that draws.
+    /// Collects the data of a run so far. Queries the database, so do not call it on the drawing thread.
     pub fn of(session: &Session) -> Story {
         let seen = session.company().observe();
         let start_cash = session.manifest().cash;
@@ -87,17 +86,18 @@ impl Story {
         }
     }
 
-    /// Whether published results stand beside it: where they are no part of the session, once it is over.
+    /// Returns whether published results are shown. If the study excludes them from the session, they are shown after
+    /// its end.
     pub fn shows_published(&self) -> bool {
         self.rules.results == ResultsShown::Published || self.seen.ended.is_some()
     }
 
-    /// Whether it tells how the person's forecasts have done; likewise.
+    /// Returns whether scores of the player's forecasts are shown, under the same condition.
     pub fn shows_calibration(&self) -> bool {
         self.rules.calibration || self.seen.ended.is_some()
     }
 
-    /// What came of the run, in one sentence.
+    /// Summarizes the result in one sentence.
     pub fn headline(&self) -> String {
         use super::words::money;
         let day = self.seen.day;
@@ -105,7 +105,7 @@ impl Story {
             Some(Ended::Horizon) => format!("Day {day}. You end with {}.", money(self.seen.cash)),
             Some(Ended::Bankruptcy) => format!("Day {day}. The company is bankrupt; the score is $0."),
             Some(Ended::Abandoned) => {
-                format!("Day {day}. The run was given up with {}; it has no score.", money(self.seen.cash))
+                format!("Day {day}. The run was abandoned with {}; it has no score.", money(self.seen.cash))
             }
             Some(Ended::Lesson) => format!("Day {day}. The lesson ends with {}.", money(self.seen.cash)),
             None => format!("Day {day} of {}. Cash is {}.", self.seen.last_day, money(self.seen.cash)),
@@ -138,7 +138,7 @@ mod tests {
     #[test]
     fn a_ruined_run_tells_what_its_money_went_to() {
         let story = Story::of(&test_kit::ruined());
-        let ruin = story.ruin.as_ref().expect("it is bankrupt");
+        let ruin = story.ruin.as_ref().expect("a bankruptcy");
         assert_eq!((ruin.day, story.measures.survival_days), (story.seen.day, story.seen.day));
         assert_eq!(ruin.costs[0].name, "development and R&D");
         let shares: f64 = ruin.costs.iter().map(|cost| cost.share).sum();

@@ -1,4 +1,5 @@
-//! Charts as SVG: inside a page, whose style gives the colours, or as a file that stands alone. Names and summaries are part of it.
+//! Charts as SVG: in a page whose style sets the colors, or as a self-contained file. Names and summaries are
+//! included.
 
 use std::fmt::Write;
 
@@ -11,25 +12,24 @@ const WIDTH: f64 = 760.0;
 const LEFT: f64 = 66.0;
 const RIGHT: f64 = 14.0;
 const BOTTOM: f64 = 40.0;
-/// Height of the part where something is drawn.
 const INSIDE: f64 = 220.0;
 const LEGEND_ROW: f64 = 20.0;
-/// About the width of a letter of the legend.
+/// Approximate width of a character in the legend.
 const LETTER: f64 = 6.6;
 
-/// How the values of a chart are placed.
+/// Scales of a chart's axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Axes {
-    /// On the axis below.
+    /// Horizontal axis.
     pub across: AxisScale,
-    /// On the axis to the left.
+    /// Vertical axis.
     pub up: AxisScale,
 }
 
-/// What the charts of reports have: weeks or days across.
+/// Axes of charts in reports: weeks or days on the horizontal axis.
 const OF_REPORTS: Axes = Axes { across: AxisScale::Whole, up: AxisScale::Linear };
 
-/// A chart of a drawing that stands alone.
+/// A chart of a self-contained file.
 pub struct ChartPart {
     /// The chart.
     pub chart: Chart,
@@ -37,7 +37,7 @@ pub struct ChartPart {
     pub axes: Axes,
 }
 
-/// A range of values with round steps; on a logarithmic axis, of their logarithms.
+/// A range of values with round steps. On a logarithmic axis it holds logarithms.
 pub(super) struct Scale {
     pub(super) from: f64,
     pub(super) to: f64,
@@ -46,7 +46,7 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    /// A scale over values in about so many steps; widened to round ends if asked.
+    /// Returns a scale over values with about `steps` steps, widened to round ends if requested.
     pub(super) fn of(values: impl Iterator<Item = f64>, steps: f64, round_ends: bool) -> Scale {
         let (mut from, mut to) = values
             .filter(|value| value.is_finite())
@@ -64,7 +64,6 @@ impl Scale {
         Scale { from, to, step, kind: AxisScale::Linear }
     }
 
-    /// The same on an axis of a kind.
     fn of_kind(kind: AxisScale, values: impl Iterator<Item = f64>, steps: f64, round_ends: bool) -> Scale {
         let own = Scale::of(values.map(|value| kind.placed(value)), steps, round_ends);
         match kind {
@@ -90,7 +89,7 @@ impl Scale {
         (first..=last).map(|at| at as f64 * self.step).collect()
     }
 
-    /// Powers of ten, and 2 and 5 times them where there are few.
+    /// Returns powers of ten; if there are few, also 2 and 5 times them.
     fn ticks_of_decades(&self) -> Vec<f64> {
         let factors: &[f64] = if self.to - self.from <= 3.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
         let decades = self.from.floor() as i32..=self.to.ceil() as i32;
@@ -103,14 +102,13 @@ impl Scale {
     }
 }
 
-/// The next of 1, 2, 5, 10, … that is no smaller.
+/// Returns the smallest of 1, 2, 5, 10, … that is at least `least`.
 fn round_step(least: f64) -> f64 {
     let magnitude = libm::pow(10.0, libm::floor(libm::log10(least)));
     let fitting = [1.0, 2.0, 5.0, 10.0].into_iter().find(|step| step * magnitude >= least * 0.999);
     fitting.unwrap_or(10.0) * magnitude
 }
 
-/// Where things are drawn.
 struct Sheet {
     x: Scale,
     y: Scale,
@@ -127,7 +125,7 @@ impl Sheet {
     }
 }
 
-/// The chart as SVG inside a page; the number makes its names unique there.
+/// Draws a chart as SVG for a page; `number` makes its element IDs unique.
 pub fn draw(chart: &Chart, number: usize) -> String {
     let (inside, height) = drawn(chart, OF_REPORTS);
     format!(
@@ -138,10 +136,10 @@ pub fn draw(chart: &Chart, number: usize) -> String {
     )
 }
 
-/// The style of a drawing that stands alone: plain colours, which every program that reads SVG knows.
+/// Style of a self-contained file, with plain colors that every SVG viewer supports.
 const STYLE: &str = include_str!("../../assets/chart.css");
 
-/// Charts under each other as one file of SVG, without a page, a script or a font of elsewhere.
+/// Draws charts below each other in one self-contained SVG file, without external scripts or fonts.
 pub fn standing_alone(title: &str, parts: &[ChartPart]) -> String {
     const HEAD: f64 = 30.0;
     let (mut all, mut below) = (String::new(), 10.0);
@@ -165,7 +163,6 @@ pub fn standing_alone(title: &str, parts: &[ChartPart]) -> String {
     )
 }
 
-/// What a chart draws, its legend included, and its height.
 fn drawn(chart: &Chart, kinds: Axes) -> (String, f64) {
     let keys = legend_keys(chart);
     let (mut svg, rows) = legend(&keys);
@@ -182,7 +179,7 @@ fn drawn(chart: &Chart, kinds: Axes) -> (String, f64) {
     (svg, sheet.top + INSIDE + BOTTOM)
 }
 
-/// The room of one bar: the distance between two that stand beside each other.
+/// Returns the width of one bar: the distance between neighbors.
 fn room_of_bar(at: &[f64]) -> f64 {
     let least = at.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(f64::INFINITY, f64::min);
     if least.is_finite() && least > 0.0 { least } else { 1.0 }
@@ -194,7 +191,7 @@ fn x_scale(chart: &Chart, kind: AxisScale) -> Scale {
             let of_band = band.iter().flat_map(|band| band.points.iter().map(|point| point.0));
             curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.0)).chain(of_band).collect()
         }
-        // Half a bar stands over each end.
+        // Half a bar extends beyond each end.
         Plot::Stacks { at, .. } => {
             let half = room_of_bar(at) / 2.0;
             at.iter().flat_map(|place| [place - half, place + half]).collect()
@@ -222,7 +219,7 @@ fn y_scale(chart: &Chart, kind: AxisScale) -> Scale {
     }
     let most = values.iter().copied().fold(0.0, f64::max);
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-    // Zero, where the values come near it.
+    // Includes zero if the values are close to it.
     if least > 0.0 && least < 0.5 * most {
         values.push(0.0);
     }
@@ -329,7 +326,6 @@ fn draw_stacks(svg: &mut String, at: &[f64], parts: &[Part], chart: &Chart, shee
     }
 }
 
-/// What a key of the legend looks like.
 enum Sign {
     Line(usize),
     Area(String),
@@ -348,7 +344,6 @@ fn legend_keys(chart: &Chart) -> Vec<(Sign, String)> {
     }
 }
 
-/// The legend and the number of its rows.
 fn legend(keys: &[(Sign, String)]) -> (String, f64) {
     let mut svg = String::new();
     let (mut x, mut row) = (LEFT, 0.0);
@@ -435,10 +430,8 @@ mod tests {
         rest.split('"').next().expect("a value").parse().unwrap_or_else(|_| panic!("{name} in {tag}"))
     }
 
-    /// Value and coordinate of the ticks of an axis.
     type Ticks = Vec<(f64, f64)>;
 
-    /// The ticks of a drawing, down and across.
     fn ticks(svg: &str) -> (Ticks, Ticks) {
         let label = |text: &str| -> Option<f64> {
             text.split('>').nth(1)?.split('<').next()?.replace(['$', ','], "").parse().ok()
@@ -494,7 +487,7 @@ mod tests {
         let upper = values.iter().map(|(x, _)| (*x, 100.0));
         let around: Vec<(f64, f64)> = upper.chain(values.into_iter().rev()).collect();
         assert_eq!(points(&svg, "band"), expected(&around));
-        // The axes themselves are even and the right way up.
+        // The axes themselves are evenly spaced and correctly oriented.
         assert!(down.windows(2).all(|pair| pair[0].0 < pair[1].0 && pair[0].1 > pair[1].1), "{down:?}");
         assert!(across.windows(2).all(|pair| pair[0].0 < pair[1].0 && pair[0].1 < pair[1].1), "{across:?}");
     }
@@ -543,11 +536,11 @@ mod tests {
         };
         let svg = standing_alone("a & b", &[part(), part()]);
         assert!(svg.starts_with("<svg xmlns=") && svg.contains("<title>a &amp; b</title>"), "{svg}");
-        assert!(svg.contains(".s1 {") && !svg.contains("var("), "the style is whole");
+        assert!(svg.contains(".s1 {") && !svg.contains("var("), "the style is complete");
         let heads: Vec<&str> =
             svg.lines().filter(|line| line.starts_with("<g transform=\"translate(0 ")).collect();
         assert_eq!(heads.len(), 4, "{svg}");
-        // Shares are labelled too: a linear axis is not held to whole numbers.
+        // Shares are labeled too: a linear axis is not restricted to whole numbers.
         assert!(svg.contains(">0.10<") || svg.contains(">0.1<"), "{svg}");
     }
 }

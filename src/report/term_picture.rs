@@ -1,5 +1,5 @@
-//! Small pictures of terms, drawn from figures that a player of the run sees: what a term means here and now. Where the run has
-//! no figure for it, published parameters or a made-up customer stand in. Nothing hidden is in them.
+//! Small pictures that illustrate glossary terms with figures visible to the player. If the run has no figure,
+//! published parameters or an invented customer are used. No picture contains hidden values.
 
 use super::fit::{Fit, fits};
 use super::plot::{Drawn, plot};
@@ -10,72 +10,70 @@ use novamind_session::identifiers::{ByGroup, Group, Plan};
 use novamind_session::{DeliveredQuality, GroupWeek, Session};
 use novamind_tools::Numbers;
 
-/// A change of reputation, as an example.
 const CHANGE: f64 = 0.1;
 /// Weeks over which a cohort is followed.
 const WEEKS: u32 = 26;
-/// Cells of the longest bar in text.
 const BAR: f64 = 30.0;
 
-/// Figures of a run that its player sees.
+/// Figures of a run that are visible to its player.
 pub struct SeenFigures<'a> {
     /// Figures of every week.
     pub weeks: &'a [WeekFigures],
     /// Figures of the groups for every week.
     pub group_weeks: &'a [ByGroup<GroupWeek>],
-    /// Every known group beside the plans.
+    /// Fit of every known group.
     pub fits: &'a [Fit],
     /// Delivered quality of every known group.
     pub quality: &'a [DeliveredQuality],
-    /// Quality before any improvement, and what development has added for everybody.
+    /// Base quality before any improvement, and the development bonus shared by all groups.
     pub quality_base: (f64, f64),
-    /// The numbers that documentation names.
+    /// Documented parameters.
     pub numbers: &'a Numbers,
 }
 
 /// A picture of a term.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TermPicture {
-    /// What is drawn, in a sentence.
+    /// Caption.
     pub caption: String,
-    /// The drawing; none while the run has no figure for it.
+    /// Drawing; `None` if the run has no figure for it yet.
     pub drawing: Option<TermDrawing>,
 }
 
-/// What is drawn.
+/// Kind of drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub enum TermDrawing {
     /// Lines between axes.
     Lines(TermLines),
-    /// Amounts, each with its name.
+    /// Named amounts.
     Bars(Vec<(String, f64)>),
 }
 
 /// Lines between axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TermLines {
-    /// Name at the end of each line, empty for none, and its points.
+    /// Name, which can be empty, and points of each line.
     pub lines: Vec<(&'static str, Vec<(f64, f64)>)>,
-    /// What is shaded: place, lower and upper end.
+    /// Shaded interval: position, lower and upper end.
     pub band: Vec<(f64, f64, f64)>,
-    /// Plans at their places.
+    /// Positions of the plans.
     pub plans: Vec<(Plan, f64, f64)>,
-    /// What stands below.
+    /// Unit of the horizontal axis.
     pub across: Across,
 }
 
-/// What the axis below counts.
+/// Unit of the horizontal axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Across {
     /// Dollars.
     Dollars,
     /// Weeks.
     Weeks,
-    /// Anything from 0 to 1.
+    /// Shares from 0 to 1.
     Share,
 }
 
-/// Whether a term has a picture.
+/// Returns whether a term has a picture.
 pub fn has_picture(term: &str) -> bool {
     matches!(
         term,
@@ -89,7 +87,7 @@ pub fn has_picture(term: &str) -> bool {
     )
 }
 
-/// The picture of a term, if it has one.
+/// Returns the picture of a term, if it has one.
 pub fn term_picture(term: &str, seen: &SeenFigures<'_>) -> Option<TermPicture> {
     Some(match term {
         "participation-curve" | "required-quality" => curve(),
@@ -108,12 +106,12 @@ fn lines(lines: Vec<(&'static str, Vec<(f64, f64)>)>, across: Across) -> Option<
 
 fn curve() -> TermPicture {
     TermPicture {
-        caption: "A made-up customer with a budget of $50: the quality it requires, by price.".to_owned(),
+        caption: "Required quality by price, for an example customer with a budget of $50.".to_owned(),
         drawing: lines(vec![("", example_curve())], Across::Dollars),
     }
 }
 
-/// The first group whose estimates are the narrowest, beside the plans.
+/// Compares the plans with the first group among those with the narrowest estimates.
 fn beside_plans(fits: &[Fit]) -> TermPicture {
     let individuals = fits.iter().filter(|own| !own.group.is_enterprise());
     let Some(own) = individuals.min_by(|one, other| one.noise.total_cmp(&other.noise)) else {
@@ -125,7 +123,7 @@ fn beside_plans(fits: &[Fit]) -> TermPicture {
     let upright = |at: f64| ("", vec![(at, 0.0), (at, top)]);
     TermPicture {
         caption: format!(
-            "{}, estimates of day {}: plans at price and quality. Shaded lies the mean floor, upright the mean budget.",
+            "{}, estimates of day {}: plans by price and quality. Shaded: mean required quality. Vertical: mean budget.",
             own.group, own.as_of
         ),
         drawing: Some(TermDrawing::Lines(TermLines {
@@ -137,7 +135,7 @@ fn beside_plans(fits: &[Fit]) -> TermPicture {
     }
 }
 
-/// What the churn of the last week would leave of a cohort.
+/// Projects how much of a cohort remains at last week's churn.
 fn cohort(weeks: &[WeekFigures]) -> TermPicture {
     let Some(churn) = churn_of_last_week(weeks) else {
         let caption = "No week after one with subscribers has run yet.".to_owned();
@@ -146,14 +144,14 @@ fn cohort(weeks: &[WeekFigures]) -> TermPicture {
     let left = |week: u32| (f64::from(week), libm::pow(1.0 - churn, f64::from(week)));
     TermPicture {
         caption: format!(
-            "Share of a cohort that is still there after so many weeks, if each loses as many as the last week did: {}.",
+            "Share of a cohort that remains after each week, at last week's churn: {}.",
             percent(churn, 1)
         ),
         drawing: lines(vec![("", (0..=WEEKS).map(left).collect())], Across::Weeks),
     }
 }
 
-/// What of a change reaches a group, by the influence that the other one has on it.
+/// Charts how much of a reputation change reaches a group, by the influence between groups.
 fn spill_over(numbers: &Numbers) -> TermPicture {
     let value = |key| numbers.value(key);
     let both = value("reputation.cross_group_spillover_factor").zip(value("reputation.cross_delta_min_abs"));
@@ -167,29 +165,32 @@ fn spill_over(numbers: &Numbers) -> TermPicture {
     let points = (0..=100).map(|step| reaching(f64::from(step) / 100.0)).collect();
     TermPicture {
         caption: format!(
-            "What of a change of reputation of {CHANGE} reaches a group, by influence from 0 to 1."
+            "How much of a reputation change of {CHANGE} reaches a group, by influence from 0 to 1."
         ),
         drawing: lines(vec![("", points)], Across::Share),
     }
 }
 
-/// What has been added to the product. What rivals have copied of it is shown to nobody.
+/// Charts the quality added to the product. How much of it competitors have copied is hidden.
 fn quality_bank(seen: &SeenFigures<'_>) -> TermPicture {
     let (base, shared) = seen.quality_base;
     let of_group = |own: &DeliveredQuality| (format!("added for {}", own.group), own.group_bonus);
     let groups = seen.quality.iter().map(of_group).filter(|own| own.1 > 0.0);
-    let first = [("without additions".to_owned(), base), ("added for everybody".to_owned(), shared)];
+    let first = [("base quality".to_owned(), base), ("added for all groups".to_owned(), shared)];
     TermPicture {
-        caption: "Quality by what has been added so far. How much of it rivals have copied is never shown."
+        caption: "Base quality and additions so far. How much of it competitors have copied is never shown."
             .to_owned(),
         drawing: Some(TermDrawing::Bars(first.into_iter().chain(groups).collect())),
     }
 }
 
-/// Leads of all groups by week: by word of mouth, and paid.
+/// Charts the leads of all groups by week: by word of mouth and paid.
 fn network(weeks: &[ByGroup<GroupWeek>]) -> TermPicture {
     if weeks.is_empty() {
-        return TermPicture { caption: "No week has run yet, so nobody has come.".to_owned(), drawing: None };
+        return TermPicture {
+            caption: "No week has run yet, so there are no leads.".to_owned(),
+            drawing: None,
+        };
     }
     let by_week = |of: fn(&GroupWeek) -> u32| {
         let sum =
@@ -199,14 +200,17 @@ fn network(weeks: &[ByGroup<GroupWeek>]) -> TermPicture {
     TermPicture {
         caption: "Leads of all groups by week: by word of mouth, and through channels.".to_owned(),
         drawing: lines(
-            vec![("paid", by_week(GroupWeek::paid_leads)), ("network", by_week(|week| week.word_of_mouth))],
+            vec![
+                ("paid", by_week(GroupWeek::paid_leads)),
+                ("word of mouth", by_week(|week| week.word_of_mouth)),
+            ],
             Across::Weeks,
         ),
     }
 }
 
 impl TermPicture {
-    /// The picture as lines of text.
+    /// Returns the picture as lines of text.
     pub fn as_text(&self) -> String {
         let drawn = self.drawing.as_ref().map_or(String::new(), |drawing| match drawing {
             TermDrawing::Lines(own) => own.as_text(),
@@ -252,7 +256,7 @@ fn bars_as_text(bars: &[(String, f64)]) -> String {
     bars.iter().map(line).collect()
 }
 
-/// The picture of a term from figures of a run, if the term has one.
+/// Returns the picture of a term with figures of a run, if the term has one.
 pub fn term_picture_of(term: &str, session: &Session) -> Option<TermPicture> {
     if !has_picture(term) {
         return None;

@@ -1,4 +1,4 @@
-//! Runs that the tests of reports share.
+//! Recorded runs shared by tests.
 
 use serde_json::{Value, json};
 
@@ -7,17 +7,17 @@ use novamind_record::trajectory::record::Via;
 use novamind_record::trajectory::{Line, Trajectory};
 use novamind_session::{NewRun, Session, Storage};
 
-/// A run in memory of some weeks, played by a sensible beginner who changes one thing in the third week.
+/// Plays a run in memory for some weeks, with sensible beginner's decisions and one change in the third week.
 pub fn played(weeks: usize) -> Session {
     run(200, 1_000_000.0, weeks, &opening())
 }
 
-/// A run in memory that reached its last day.
+/// Returns a run in memory that has reached its last day.
 pub fn finished() -> Session {
     run(35, 1_000_000.0, 5, &opening())
 }
 
-/// A run in memory that spends itself into ruin.
+/// Returns a run in memory that goes bankrupt from spending.
 pub fn ruined() -> Session {
     let mut calls = opening();
     calls.push(("set_targeted_dev_spend", json!({"targeted_spend": {"S1": 16000}})));
@@ -75,7 +75,7 @@ fn run(days: u32, cash: f64, weeks: usize, calls: &[(&str, Value)]) -> Session {
     session
 }
 
-/// A short run on the disk with a bit of everything, and its lines.
+/// Records a short run on disk with a variety of events, and returns it with its lines.
 pub fn recorded() -> (Session, Vec<Line>) {
     let runs = tempfile::tempdir().expect("a folder");
     let new = NewRun {

@@ -1,22 +1,20 @@
-//! How a company went under: what its money went to, and when things turned.
+//! Analysis of a bankruptcy: costs by kind and turning points.
 
 use std::collections::BTreeMap;
 
 use super::words::{money, whole};
 use novamind_record::figures::WeekFigures;
 
-/// A kind of cost over the whole run.
+/// Total of one kind of cost over the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cost {
-    /// What it was spent on.
     pub name: &'static str,
-    /// Dollars.
     pub dollars: f64,
     /// Share of all costs.
     pub share: f64,
 }
 
-/// Kinds of cost and the categories of the ledger they hold.
+/// Kinds of cost and their ledger categories.
 pub const COSTS: [(&str, &[&str]); 6] = [
     ("development and R&D", &["development", "research_project"]),
     ("ads and leads", &["advertising", "lead_acquisition_cost"]),
@@ -26,11 +24,11 @@ pub const COSTS: [(&str, &[&str]); 6] = [
     ("market studies", &["market_research", "group_research"]),
 ];
 
-/// Kinds of income and the categories of the ledger they hold; the funding is none.
+/// Kinds of income and their ledger categories, without the initial funding.
 pub const INCOME: [(&str, &[&str]); 2] =
     [("payments", &["subscription_payment"]), ("ad revenue", &["ad_revenue"])];
 
-/// What money went to, the dearest first; kinds without any cost are left out.
+/// Returns costs by kind, highest first. Omits kinds without costs.
 pub fn costs(totals: &BTreeMap<&str, f64>) -> Vec<Cost> {
     let spent = |names: &[&str]| -> f64 { names.iter().filter_map(|name| totals.get(name)).sum() };
     let mut all: Vec<(&'static str, f64)> = COSTS.iter().map(|(name, held)| (*name, -spent(held))).collect();
@@ -40,7 +38,7 @@ pub fn costs(totals: &BTreeMap<&str, f64>) -> Vec<Cost> {
     all.into_iter().map(|(name, dollars)| Cost { name, dollars, share: dollars / sum }).collect()
 }
 
-/// Sentences about when things turned: the last high of cash, of revenue and of subscribers, and what followed.
+/// Describes turning points: the last peak of cash, revenue and subscribers, and the weeks after.
 pub fn turned(weeks: &[WeekFigures]) -> Vec<String> {
     let Some(last) = weeks.last() else { return Vec::new() };
     let mut told = Vec::new();
@@ -49,14 +47,14 @@ pub fn turned(weeks: &[WeekFigures]) -> Vec<String> {
     };
     let people = |week: &WeekFigures| f64::from(week.individual_subscribers);
     match high(people).filter(|week| people(week) > 0.0) {
-        None => told.push("Nobody ever subscribed: there were costs and no income.".to_owned()),
+        None => told.push("No one subscribed: there were costs and no income.".to_owned()),
         Some(top) if top.day < last.day => told.push(format!(
             "Peak: {} subscribers on day {}; {} at the end.",
             whole(people(top)),
             top.day,
             whole(people(last))
         )),
-        Some(top) => told.push(format!("Subscribers still grew at the end: {}.", whole(people(top)))),
+        Some(top) => told.push(format!("Subscribers were still growing at the end: {}.", whole(people(top)))),
     }
     if let Some(week) = weeks.iter().rev().find(|week| week.cash_change > 0.0) {
         told.push(format!("The last profitable week ended on day {}.", week.day));
@@ -75,7 +73,7 @@ pub fn turned(weeks: &[WeekFigures]) -> Vec<String> {
     let outgrown = weeks.iter().find(|week| week.cancellations > week.new_individual_subscribers);
     if let Some(week) = outgrown.filter(|week| week.cancellations > 20) {
         told.push(format!(
-            "In the week to day {}, more people left ({}) than joined ({}) for the first time.",
+            "In the week to day {}, cancellations ({}) exceeded new subscribers ({}) for the first time.",
             week.day,
             whole(f64::from(week.cancellations)),
             whole(f64::from(week.new_individual_subscribers))
@@ -130,10 +128,10 @@ mod tests {
                 "Peak: 150 subscribers on day 14; 90 at the end.",
                 "The last profitable week ended on day 7.",
                 "In the last 3 weeks, income was $67 a week and running costs $107.",
-                "In the week to day 21, more people left (80) than joined (20) for the first time.",
+                "In the week to day 21, cancellations (80) exceeded new subscribers (20) for the first time.",
             ]
         );
-        assert!(turned(&[week(7, 0, 0, 0, 0.0, 9.0)])[0].starts_with("Nobody ever subscribed"));
+        assert!(turned(&[week(7, 0, 0, 0, 0.0, 9.0)])[0].starts_with("No one subscribed"));
         assert!(turned(&[]).is_empty());
     }
 }

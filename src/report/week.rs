@@ -1,5 +1,5 @@
-//! The report of a week: how cash changed and what that consists of, which figures changed most unusually, what was set before
-//! it, what is new, and what became of the forecasts for it.
+//! Weekly report: change of cash and its parts, the most unusual changes of figures, decisions before the week, news,
+//! and the outcome of due forecasts.
 
 use std::ops::Range;
 
@@ -12,7 +12,7 @@ use novamind_session::{
     Category, Decisions, JournalEntry, ScoredForecast, Session, TIME_LIMIT, filed_forecasts,
 };
 
-/// A figure that moved.
+/// A figure that changed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Move {
     /// Name.
@@ -21,21 +21,21 @@ pub struct Move {
     pub old: String,
     /// Value of the week.
     pub new: String,
-    /// Whether it rose.
+    /// Whether the figure rose.
     pub up: bool,
-    /// Whether that is good for the company; none where it depends.
+    /// Whether the change is good for the company; `None` if it depends.
     pub good: Option<bool>,
-    /// It is a share, 0 to 1.
+    /// Whether the figure is a share from 0 to 1.
     pub is_share: bool,
-    /// How it moved against the weeks before.
+    /// Comparison with the changes of earlier weeks.
     pub movement: Movement,
-    /// Categories of the ledger whose changes add up to this one, the largest first; empty where the figure is none of
-    /// the ledger's.
+    /// Ledger categories whose changes add up to this one, largest first. Empty if the figure is not from the ledger.
     pub split: Vec<(&'static str, f64)>,
 }
 
 impl Move {
-    /// The size of the change: of shares in percentage points, otherwise in percent of the value before. `None` if that was 0.
+    /// Formats the size of the change: percentage points for shares, otherwise percent of the value before. `None` if
+    /// that was 0.
     pub fn size_in_words(&self) -> Option<String> {
         let (old, new) = (self.movement.old, self.movement.new);
         if self.is_share {
@@ -51,45 +51,42 @@ impl Move {
     }
 }
 
-/// The report of a week.
+/// The report on a week.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeekReport {
-    /// Its figures.
+    /// Figures of the week.
     pub week: WeekFigures,
-    /// Days that it and the week before have, where they are not as many: the last week of a run may be short.
+    /// Lengths of this week and the one before, if they differ: the last week of a run can be short.
     pub short: Option<String>,
-    /// What the change of cash consists of, by category of the ledger: income, then costs from the largest.
+    /// Parts of the change of cash by ledger category: income, then costs from the largest.
     pub parts: Vec<(&'static str, f64)>,
-    /// What changed, the most unusual first.
+    /// Changed figures, the most unusual first.
     pub moves: Vec<Move>,
-    /// Settings that were changed before it, old → new, then purchases, posts and offers.
+    /// Changed settings as old → new, then purchases, posts and offers.
     pub decided: Vec<String>,
-    /// Forecasts for its last day, the shortest first.
+    /// Forecasts for the last day of the week, shortest horizon first.
     pub due: Vec<ScoredForecast>,
-    /// Posts of customers in it.
+    /// Number of customers' posts.
     pub customer_posts: u32,
-    /// Answers to our posts in it.
+    /// Number of comments on the company's posts.
     pub comments: u32,
-    /// News items in it.
+    /// Number of news items.
     pub news_items: u32,
-    /// Days on which the program filed a week because the time for it was over.
+    /// Days on which a time limit filed a week.
     limit_days: Vec<u32>,
 }
 
-/// A figure: its name, how it is read, its unit, whether more of it is better, and the categories of the ledger that make it
-/// up.
+/// A figure: name, reader, unit, whether higher is better, and its ledger categories.
 struct Row(&'static str, fn(&WeekFigures) -> f64, Unit, Option<bool>, &'static [Category]);
 
-/// The unit of a figure: how its values are written and how much they vary by chance.
+/// Unit of a figure, which determines its format and random variation.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Unit {
     Dollars,
     Count,
     Units,
     Minutes,
-    /// A share of the leads.
     ShareOfLeads,
-    /// Another share.
     Share,
 }
 
@@ -108,10 +105,10 @@ impl Unit {
         matches!(self, Unit::ShareOfLeads | Unit::Share)
     }
 
-    /// How much a value of a week varies by chance alone, or is too little to matter to the company.
+    /// Returns the random variation of a weekly value, or the amount too small to matter to the company.
     fn noise(self, value: f64, week: &WeekFigures) -> f64 {
         match self {
-            // A hundredth of what the company turns over.
+            // A hundredth of the company's turnover.
             Unit::Dollars => 0.01 * (week.payments + week.costs).max(100.0),
             // Counts of independent events.
             Unit::Count | Unit::Units | Unit::Minutes => value.max(1.0).sqrt(),
@@ -121,7 +118,6 @@ impl Unit {
     }
 }
 
-/// Costs that run from day to day.
 const RUNNING: [Category; 5] = [
     Category::Capacity,
     Category::Compute,
@@ -147,26 +143,26 @@ const FIGURES: [Row; 14] = [
     Row("open issues", |week| f64::from(week.open_issues), Unit::Count, Some(false), &[]),
 ];
 
-/// What the report of a week is made from.
+/// Data for a weekly report.
 pub struct Sources<'a> {
     /// Figures of every week.
     pub weeks: &'a [WeekFigures],
-    /// What was decided before each.
+    /// Decisions before each week.
     pub decisions: &'a [Decisions],
-    /// Everything that was done.
+    /// All actions.
     pub journal: &'a [JournalEntry],
     /// Cash at the end of each day, day 0 first.
     pub cash_by_day: &'a [f64],
-    /// Days of posts: of customers, of comments on ours, of news items.
+    /// Days of posts: by customers, comments on the company's posts, and news items.
     pub posts: [&'a [u32]; 3],
 }
 
 impl WeekReport {
-    /// The last week of a run; none before the first.
+    /// Returns the report on the last week; `None` before the first.
     pub fn of_session(session: &Session) -> Option<WeekReport> {
         let mut posts: [Vec<u32>; 3] = Default::default();
         for post in session.company().posts() {
-            // Nobody's customers write the news.
+            // News items have no customer group.
             let kind = match (post.own_post, &post.written_by) {
                 (Some(_), _) => 1,
                 (None, Some(_)) => 0,
@@ -183,7 +179,7 @@ impl WeekReport {
         })
     }
 
-    /// The last week of these; none before the first.
+    /// Returns the report on the last of these weeks; `None` before the first.
     pub fn of(sources: &Sources<'_>) -> Option<WeekReport> {
         let week = *sources.weeks.last()?;
         let first_day = week.day - week.days_run.min(week.day) + 1;
@@ -204,24 +200,24 @@ impl WeekReport {
         })
     }
 
-    /// Whether the program filed the week because the time for it was over.
+    /// Returns whether a time limit filed the week.
     pub fn was_filed_at_limit(&self) -> bool {
         self.limit_days.contains(&(self.week.day - self.week.days_run.min(self.week.day)))
     }
 
-    /// Whether a forecast was filed so.
+    /// Returns whether a time limit filed a forecast.
     pub fn is_of_limit(&self, forecast: &ScoredForecast) -> bool {
         self.limit_days.contains(&forecast.day)
     }
 }
 
-/// The days of the last two weeks, where they are not as many.
+/// Describes the lengths of the last two weeks if they differ.
 fn short(weeks: &[WeekFigures]) -> Option<String> {
     let [.., before, own] = weeks else { return None };
     short_week_in_words(own.days_run, before.days_run)
 }
 
-/// The day on which the program filed a week because the time for it was over.
+/// Returns the day on which a time limit filed a week.
 fn filed_at_limit(entry: &JournalEntry) -> Option<u32> {
     match entry {
         JournalEntry::Advance { day, rationale, filled_naively: [true, true, true, true], .. }
@@ -233,7 +229,7 @@ fn filed_at_limit(entry: &JournalEntry) -> Option<u32> {
     }
 }
 
-/// What was booked: income, then costs from the largest.
+/// Returns ledger entries: income, then costs from the largest.
 fn parts(booked: &Booked) -> Vec<(&'static str, f64)> {
     let mut parts: Vec<(&'static str, f64)> =
         booked.entries().map(|(category, dollars)| (category_name(category), dollars)).collect();
@@ -243,7 +239,7 @@ fn parts(booked: &Booked) -> Vec<(&'static str, f64)> {
     parts
 }
 
-/// What was decided on some days, in words: before a week, and between the single days that it was run in.
+/// Describes the decisions of some days: before a week, and between its single days if it was run day by day.
 fn decided(sources: &Sources<'_>, days: Range<u32>) -> Vec<String> {
     let found = sources.decisions.iter().filter(|decided| days.contains(&decided.day));
     found
@@ -257,13 +253,13 @@ fn moves(sources: &Sources<'_>, week: &WeekFigures) -> Vec<Move> {
     let nothing = WeekFigures::default();
     let before = sources.weeks.len().checked_sub(2).map_or(&nothing, |at| &sources.weeks[at]);
     let moved = |Row(name, read, unit, more_is_better, categories): &Row| {
-        // Before the first week there was nothing.
+        // Before the first week all figures are 0.
         let series: Vec<f64> = std::iter::once(&nothing).chain(sources.weeks).map(read).collect();
         let noise = unit.noise(read(before), before).max(unit.noise(read(week), week));
         let movement = movement(&series, noise)?;
         let up = movement.new > movement.old;
         let (old, new) = (unit.write(movement.old), unit.write(movement.new));
-        // What is written the same, or moved by less than a thousandth, did not move for the reader.
+        // Values that are displayed alike, or changed by less than a thousandth, count as unchanged.
         let moved = old != new && movement.size() >= 0.001;
         moved.then(|| Move {
             name,
@@ -281,7 +277,6 @@ fn moves(sources: &Sources<'_>, week: &WeekFigures) -> Vec<Move> {
     moves
 }
 
-/// By how much each of some costs rose or fell, the largest change first.
 fn split(categories: &[Category], before: &Booked, now: &Booked) -> Vec<(&'static str, f64)> {
     let mut changes: Vec<(&'static str, f64)> = categories
         .iter()
@@ -292,7 +287,6 @@ fn split(categories: &[Category], before: &Booked, now: &Booked) -> Vec<(&'stati
     changes
 }
 
-/// Forecasts for a day whose cash is known, the shortest horizon first.
 fn due(sources: &Sources<'_>, day: u32) -> Vec<ScoredForecast> {
     let mut due = filed_forecasts(sources.journal, sources.cash_by_day);
     due.retain(|forecast| forecast.due() == day && forecast.outcome.is_some());
@@ -342,7 +336,7 @@ mod tests {
                 assert!((week.booked.of(category) - dollars).abs() < 0.01, "week {} {id}", at + 1);
             }
         }
-        let costs = report.moves.iter().find(|moved| moved.name == "running costs").expect("they moved");
+        let costs = report.moves.iter().find(|moved| moved.name == "running costs").expect("they changed");
         let split: f64 = costs.split.iter().map(|(_, dollars)| dollars).sum();
         assert!((split - (costs.movement.new - costs.movement.old)).abs() < 0.01);
     }
@@ -361,7 +355,7 @@ mod tests {
         let order: Vec<f64> = report.moves.iter().map(|moved| moved.movement.unusual).collect();
         assert!(order.is_sorted_by(|left, right| left >= right), "{order:?}");
         assert!(report.moves.iter().all(|moved| moved.old != moved.new));
-        assert!(report.decided.is_empty(), "nothing was set before week 5: {:?}", report.decided);
+        assert!(report.decided.is_empty(), "no setting changed before week 5: {:?}", report.decided);
     }
 
     #[test]
@@ -401,7 +395,7 @@ mod tests {
             assert_eq!(names, ["payments", "cancellations"], "after {more} weeks");
             assert_eq!(report.moves[1].movement.standing(), "", "after {more} weeks");
         }
-        // Many cancellations are told before money that hardly changed.
+        // Many cancellations rank above a minor change of money.
         let wave = WeekFigures { cancellations: 90, payments: 4_100.0, ..before };
         assert_eq!(two_weeks(before, wave, 5).moves[0].name, "cancellations");
     }

@@ -1,4 +1,4 @@
-//! What would have been, in words and tables.
+//! Text and tables for what-if comparisons.
 
 use super::why::{signed, written};
 use super::words::{count, first_change_in_words};
@@ -10,10 +10,10 @@ use novamind_insight::{
 };
 use novamind_record::figures::FigureUnit;
 
-/// The name of the branch without edits. Days after the end of the record were not played in it either.
+// Its simulation can continue beyond the end of the record, with unchanged settings.
 const UNCHANGED: &str = "your decisions unchanged";
 
-/// What a branch decides otherwise, as it is written.
+/// Names a branch by its edits.
 pub fn name(edits: &[DecisionEdit]) -> String {
     match edits {
         [] => UNCHANGED.to_owned(),
@@ -21,31 +21,34 @@ pub fn name(edits: &[DecisionEdit]) -> String {
     }
 }
 
-/// From when to when, and where the decisions end.
+/// Describes the period, and where recorded decisions end.
 pub fn heading(comparison: &BranchComparison, days_per_week: u32) -> String {
     let BranchComparison { from, until, recorded_until, .. } = comparison;
     let (first, last) = (from / days_per_week + 1, until.div_ceil(days_per_week));
     let beyond = match recorded_until < until {
-        true => format!(
-            "; days after {recorded_until} were not played yet: nothing is decided, the settings stay"
-        ),
+        true => {
+            format!("; days after {recorded_until} were not played: no further decisions, settings unchanged")
+        }
         false => String::new(),
     };
-    format!("weeks {first} to {last} (days {} to {until}) again, the same luck{beyond}", from + 1)
+    format!(
+        "re-simulation of weeks {first} to {last} (days {} to {until}), same random draws{beyond}",
+        from + 1
+    )
 }
 
-/// A branch: its number, name, and when its company becomes another.
+/// Describes a branch: number, name and the first day on which it differs.
 pub fn branch_line(number: usize, branch: &BranchFigures) -> String {
     let name = name(&branch.edits);
     let since = match (branch.differs_on, branch.edits.is_empty()) {
         (_, true) => String::new(),
-        (Some(day), _) => format!(" · another company from day {day} on"),
-        (None, _) => " · the same company on every day".to_owned(),
+        (Some(day), _) => format!(" · differs from day {day}"),
+        (None, _) => " · identical on every day".to_owned(),
     };
     format!("{number}  {name}{since}")
 }
 
-/// What is decided otherwise, what is refused now, and what would be accepted now; nothing is left out.
+/// Lists all changed decisions, newly rejected ones, and rejected ones that would now be accepted.
 pub fn decisions(branch: &BranchFigures, days_per_week: u32) -> Vec<String> {
     let week = |day: u32| day / days_per_week + 1;
     let differing = alike(&branch.differences).into_iter().map(|calls| difference(&calls, week));
@@ -53,10 +56,10 @@ pub fn decisions(branch: &BranchFigures, days_per_week: u32) -> Vec<String> {
     let refused = branch
         .refused
         .iter()
-        .map(|(day, what, refusal)| format!("week {}: {what} is refused: {}", week(*day), refusal.message));
+        .map(|(day, what, refusal)| format!("week {}: {what} is rejected: {}", week(*day), refusal.message));
     let possible = branch.possible.iter().map(|(line, day, tool)| {
         format!(
-            "week {}: {} of line {line} was refused and would be accepted; it is not made",
+            "week {}: {} of line {line} was rejected and would now be accepted; it is skipped",
             week(*day),
             tool.name()
         )
@@ -69,7 +72,6 @@ pub fn decisions(branch: &BranchFigures, days_per_week: u32) -> Vec<String> {
         .collect()
 }
 
-/// A parameter that is set otherwise.
 fn parameter(own: &ParameterDifference, week: u32) -> String {
     let ParameterDifference { key, was, is, .. } = own;
     match (was, is) {
@@ -79,7 +81,6 @@ fn parameter(own: &ParameterDifference, week: u32) -> String {
     }
 }
 
-/// Calls that differ in the same way, together.
 fn alike(differences: &[DecisionDifference]) -> Vec<Vec<&DecisionDifference>> {
     let mut all: Vec<Vec<&DecisionDifference>> = Vec::new();
     for call in differences {
@@ -94,7 +95,7 @@ fn alike(differences: &[DecisionDifference]) -> Vec<Vec<&DecisionDifference>> {
     all
 }
 
-/// What differs about some calls in the same way: `weeks 20 to 72: set_prices {…} → {…} (53 calls)`.
+/// Describes calls that differ in the same way: `weeks 20 to 72: set_prices {…} → {…} (53 calls)`.
 fn difference(calls: &[&DecisionDifference], week: impl Fn(u32) -> u32) -> String {
     let [first, .., last] = calls else {
         return calls.first().map_or(String::new(), |only| {
@@ -114,25 +115,24 @@ fn otherwise(call: &DecisionDifference) -> String {
     let tool = call.tool.name();
     match (&call.was, &call.is) {
         (Some(was), Some(is)) => format!("{tool} {was} → {is}"),
-        (Some(was), None) => format!("{tool} {was} is not made"),
-        (None, Some(is)) => format!("{tool} {is} is new"),
+        (Some(was), None) => format!("{tool} {was} is skipped"),
+        (None, Some(is)) => format!("{tool} {is} is added"),
         (None, None) => tool.to_owned(),
     }
 }
 
-/// The week after which figures are shown; `ahead` if it was not played to its end yet.
+/// Returns the week after which figures are shown, marked `ahead` if the record ends before it does.
 pub fn week_of_milestone(comparison: &BranchComparison, day: u32, days_per_week: u32) -> String {
     let ahead = if day > comparison.recorded_until { " ahead" } else { "" };
     format!("{}{ahead}", day.div_ceil(days_per_week))
 }
 
-/// Headers and rows: a figure at each milestone, in each branch, with its difference from the unchanged run.
+/// Returns headers and rows: one figure at each milestone, by branch, with its difference from the unchanged run.
 pub fn table(comparison: &BranchComparison, days_per_week: u32) -> (Vec<String>, Vec<Vec<String>>) {
     let cell = |at: usize, figure, day| cell(comparison, &comparison.branches[at], figure, day);
     table_of(comparison, days_per_week, cell)
 }
 
-/// Headers and rows with a cell for each milestone, figure and branch.
 fn table_of(
     comparison: &BranchComparison,
     days_per_week: u32,
@@ -153,13 +153,13 @@ fn table_of(
     (headers.collect(), rows)
 }
 
-/// A value, and what it has more than the run as it was.
+/// Formats a value and its difference from the unchanged run.
 pub fn cell(comparison: &BranchComparison, branch: &BranchFigures, figure: BranchFigure, day: u32) -> String {
     let [value, more] = cell_in_two(comparison, branch, figure, day);
     if more.is_empty() { value } else { format!("{value} {more}") }
 }
 
-/// The same in two lines, where there is little room: the value, and in brackets what it has more.
+/// Formats a cell as two short lines: the value, and its difference in brackets.
 pub fn cell_in_two(
     comparison: &BranchComparison,
     branch: &BranchFigures,
@@ -169,7 +169,7 @@ pub fn cell_in_two(
     let alone = |text: &str| [text.to_owned(), String::new()];
     let Some(value) = branch.value(figure, day) else {
         let last = branch.last_day().map_or(String::new(), |day| format!("(day {day})"));
-        return ["over".to_owned(), last];
+        return ["ended".to_owned(), last];
     };
     if value.is_nan() {
         return alone("—");
@@ -180,27 +180,27 @@ pub fn cell_in_two(
     [written(figure.unit(), value), more]
 }
 
-/// How many futures were drawn, and from when on.
+/// Describes the number of futures and their first redrawn day.
 pub fn futures_heading(futures: &Futures) -> String {
     format!(
-        "{} of which the luck is drawn anew after day {}; median, and in brackets from the tenth to the ninetieth percent",
+        "{} with new random draws after day {}; median, and in brackets the 10th to 90th percentile",
         count(futures.count, "future"),
         futures.redrawn_after
     )
 }
 
-/// How many futures of a branch end in bankruptcy, and what is counted of them; none where all go to the end.
+/// Describes how many futures of a branch end in bankruptcy, and how they are counted; `None` without bankruptcies.
 pub fn bankrupt(futures: &Futures, branch: usize) -> Option<String> {
     let ended = futures.bankrupt(branch);
     (ended > 0).then(|| {
         format!(
-            "{branch}: {ended} of {} end in bankruptcy; from then on their cash stays, and they have no subscribers",
+            "{branch}: {ended} of {} end in bankruptcy; afterwards, their cash is constant and they have no subscribers",
             count(futures.count, "future")
         )
     })
 }
 
-/// Headers and rows: a figure at each milestone, in each branch, over the futures.
+/// Returns headers and rows: one figure at each milestone, by branch, over the futures.
 pub fn futures_table(
     comparison: &BranchComparison,
     futures: &Futures,
@@ -209,14 +209,14 @@ pub fn futures_table(
     table_of(comparison, days_per_week, |at, figure, day| futures_cell(futures, at, figure, day))
 }
 
-/// A figure over the futures: its median, and from where to where nine of ten and one of ten have more.
+/// Formats a figure over the futures: median, 10th and 90th percentile.
 pub fn futures_cell(futures: &Futures, branch: usize, figure: BranchFigure, day: u32) -> String {
     let Some(band) = futures.band(branch, figure, day) else { return "—".to_owned() };
     let value = |value| written(figure.unit(), value);
     format!("{} ({} to {})", value(band.median), value(band.low), value(band.high))
 }
 
-/// The same in two lines, where there is little room: the median, and from where to where.
+/// Formats a cell of the futures as two short lines: the median, and the percentiles.
 pub fn futures_cell_in_two(futures: &Futures, branch: usize, figure: BranchFigure, day: u32) -> [String; 2] {
     let Some(band) = futures.band(branch, figure, day) else { return ["—".to_owned(), String::new()] };
     let short = |value: f64| match figure.unit() {
@@ -227,7 +227,7 @@ pub fn futures_cell_in_two(futures: &Futures, branch: usize, figure: BranchFigur
     [written(figure.unit(), band.median), format!("{}–{}", short(band.low), short(band.high))]
 }
 
-/// What a branch has more of a figure at the end, and how sure that is; none where no future has a value.
+/// Describes the difference of a branch at the end and its uncertainty; `None` if no future has a value.
 pub fn difference_line(
     comparison: &BranchComparison,
     futures: &Futures,
@@ -248,14 +248,14 @@ pub fn difference_line(
     ))
 }
 
-/// A run in the tree of branches.
+/// Describes a run in the tree of related runs.
 pub fn kin_line(kin: &Kin, own: &str) -> String {
     let run = &kin.run;
     let mark = if run.id == own { " (this run)" } else { "" };
-    let left = kin.left_in_week.map_or(String::new(), |week| format!(" · left in week {week}"));
+    let left = kin.left_in_week.map_or(String::new(), |week| format!(" · branched in week {week}"));
     let change = match (&kin.first_change, kin.left_in_week) {
         (Some(change), Some(_)) => format!(", first change {}", first_change_in_words(change)),
-        (None, Some(_)) => ", decides as its parent".to_owned(),
+        (None, Some(_)) => ", same decisions as its parent".to_owned(),
         _ => String::new(),
     };
     let end = run.ended.map_or(String::new(), |ended| format!(", {}", ended.id()));
@@ -289,8 +289,8 @@ mod tests {
         assert_eq!([28, 35, 42, 49].map(told), ["4", "5", "6 ahead", "7 ahead"]);
         assert_eq!(
             heading(&comparison, 7),
-            "weeks 4 to 7 (days 22 to 49) again, the same luck; days after 35 were not played yet: nothing is decided, \
-             the settings stay"
+            "re-simulation of weeks 4 to 7 (days 22 to 49), same random draws; days after 35 were not played: no further \
+             decisions, settings unchanged"
         );
         assert_eq!(name(&[]), "your decisions unchanged");
     }
@@ -316,9 +316,9 @@ mod tests {
         assert_eq!(
             told,
             [
-                "week 2: set_prices {\"B\":9.5} is new; the run calls set_prices again in week 3 (line 20)",
+                "week 2: set_prices {\"B\":9.5} is added; the run calls set_prices again in week 3 (line 20)",
                 "weeks 2 to 4: set_prices {\"B\":10.0} → {\"B\":9.5} (2 calls)",
-                "week 3: set_prices {\"B\":30.0} is not made (line 20)",
+                "week 3: set_prices {\"B\":30.0} is skipped (line 20)",
             ]
         );
     }

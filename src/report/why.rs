@@ -1,4 +1,4 @@
-//! Why a figure changed, in words and numbers.
+//! Text and figures for the causes of a change.
 
 use super::chapters::change_in_words;
 use super::words::{count, number, points, short_week_in_words, whole};
@@ -6,23 +6,23 @@ use novamind_base::notation::{grouped, percent};
 use novamind_insight::{Detail, InputDetail, Why};
 use novamind_record::figures::FigureUnit;
 
-/// What no cause explains.
-pub const REST: &str = "composition and chance";
+/// Name of the part that no cause explains.
+pub const REST: &str = "residual";
 
-/// A line of an answer: a cause, or the rest.
+/// A cause with its contribution, or the residual.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CauseLine {
     /// Name of the cause.
     pub name: &'static str,
-    /// Its share of the change.
+    /// Contribution to the change.
     pub amount: f64,
-    /// The same, written with its sign.
+    /// Contribution with its sign, formatted.
     pub written: String,
-    /// What differs about it, old → new.
+    /// Inputs that differ, old → new.
     pub details: Vec<String>,
 }
 
-/// Every cause, the largest first, and the rest.
+/// Returns all causes, largest first, and the residual.
 pub fn lines(why: &Why) -> Vec<CauseLine> {
     let line = |name, amount, details| {
         let written = signed(why.quantity.unit(), amount);
@@ -34,14 +34,14 @@ pub fn lines(why: &Why) -> Vec<CauseLine> {
     why.parts.iter().map(part).chain([line(REST, why.rest, Vec::new())]).collect()
 }
 
-/// The change and its causes: `cancellations +942 = price +938 · rivals +4 · composition and chance 0`.
+/// Writes the change and its causes: `cancellations +942 = price +938 · competitors +4 · residual 0`.
 pub fn equation(why: &Why) -> String {
     let parts: Vec<String> =
         lines(why).iter().map(|line| format!("{} {}", line.name, line.written)).collect();
     format!("{} {} = {}", why.quantity.name(), signed(why.quantity.unit(), why.change()), parts.join(" · "))
 }
 
-/// The figure in both weeks: `week 20: 195 → 1,137`; how many days they have where one is short.
+/// Writes the figure in both weeks, and their lengths if they differ: `week 20: 195 → 1,137`.
 pub fn heading(why: &Why) -> String {
     let value = |value| written(why.quantity.unit(), value);
     let [before, own] = why.days;
@@ -49,7 +49,7 @@ pub fn heading(why: &Why) -> String {
     format!("{}, week {}: {} → {}{short}", why.quantity.name(), why.week, value(why.before), value(why.after))
 }
 
-/// A value of a figure in a unit.
+/// Formats a value in a unit.
 pub fn written(unit: FigureUnit, value: f64) -> String {
     match unit {
         FigureUnit::Dollars => novamind_base::notation::dollars(value + 0.0),
@@ -60,7 +60,7 @@ pub fn written(unit: FigureUnit, value: f64) -> String {
     }
 }
 
-/// A change of a figure with its sign; shares change by percentage points.
+/// Formats a change with its sign; shares in percentage points.
 pub fn signed(unit: FigureUnit, change: f64) -> String {
     let size = change.abs();
     let text = match unit {
@@ -111,20 +111,14 @@ mod tests {
         let price = Cause::Calls(ToolId::SetPrices);
         let told = why(WeekFigure::Cancellations, 195.0, 1137.0, &[(price, 938.0), (Cause::Rivals, 3.5)]);
         let equation_told = equation(&told);
-        assert_eq!(
-            equation_told,
-            "cancellations +942 = price +938 · rivals +3.5 · composition and chance +0.5"
-        );
+        assert_eq!(equation_told, "cancellations +942 = price +938 · rivals +3.5 · residual +0.5");
         assert_eq!(heading(&told), "cancellations, week 20: 195 → 1,137");
         let short = Why { days: [7, 3], ..told };
         assert_eq!(heading(&short), "cancellations, week 20: 195 → 1,137 (of 3 days, the week before of 7)");
         let told = why(WeekFigure::Conversion, 0.2, 0.19, &[(price, -0.01), (Cause::Service, 0.0)]);
-        assert_eq!(
-            equation(&told),
-            "conversion -1.00 pt = price -1.00 pt · load and outages 0 · composition and chance 0"
-        );
+        assert_eq!(equation(&told), "conversion -1.00 pt = price -1.00 pt · load and outages 0 · residual 0");
         let told = why(WeekFigure::CashChange, 100.0, -4_900.4, &[(Cause::Market, -5_000.0)]);
-        assert_eq!(equation(&told), "cash change -$5,000 = market -$5,000 · composition and chance 0");
+        assert_eq!(equation(&told), "cash change -$5,000 = market -$5,000 · residual 0");
     }
 
     #[test]

@@ -1,17 +1,17 @@
-//! How reports write figures and name what they are.
+//! Formats and names used by all reports.
 
 pub use novamind_base::notation::count;
 use novamind_base::notation::{compact, grouped, signed_dollars};
 use novamind_insight::{BranchOrigin, FirstChange};
 use novamind_session::{Category, Observation};
 
-/// Money with its sign before the dollar: `$1,234`, `-$45`.
+/// Formats dollars with the sign before the dollar sign: `$1,234`, `-$45`.
 pub fn money(value: f64) -> String {
     let sign = if value < -0.5 { "-" } else { "" };
     format!("{sign}${}", grouped(value.abs(), 0))
 }
 
-/// How cash moved last, and over which days: `+$1,234 over the last week`.
+/// Describes the last change of cash and its period: `+$1,234 over the last week`.
 pub fn cash_change_in_words(seen: &Observation) -> String {
     let span = match seen.cash_change_days {
         0 | 7 => "week".to_owned(),
@@ -21,7 +21,7 @@ pub fn cash_change_in_words(seen: &Observation) -> String {
     format!("{} over the last {span}", signed_dollars(seen.cash_change))
 }
 
-/// Where a branch came from: `branch of 1a2b3c4d from week 5, first change set_prices on day 28`.
+/// Describes the origin of a branch: `branch of 1a2b3c4d from week 5, first change set_prices on day 28`.
 pub fn origin_in_words(origin: &BranchOrigin) -> String {
     let BranchOrigin { run, week, first_change } = origin;
     let change = first_change
@@ -30,18 +30,18 @@ pub fn origin_in_words(origin: &BranchOrigin) -> String {
     format!("branch of {run} from week {week}{change}")
 }
 
-/// The decision by which a branch parted from its parent: `set_prices on day 28`, `no set_prices on day 28`.
+/// Describes the first decision that differs from the parent: `set_prices on day 28`, `no set_prices on day 28`.
 pub fn first_change_in_words(change: &FirstChange) -> String {
     let FirstChange { day, what, is_left_out } = change;
     format!("{}{what} on day {day}", if *is_left_out { "no " } else { "" })
 }
 
-/// How many days two weeks have that are held against each other, where they are not as long: `of 3 days, the week before of 7`.
+/// Describes the lengths of two compared weeks if they differ: `of 3 days, the week before of 7`.
 pub fn short_week_in_words(days: u32, before: u32) -> Option<String> {
     (days != before).then(|| format!("of {}, the week before of {before}", count(days, "day")))
 }
 
-/// Name of a category of the ledger, as every screen and report writes it.
+/// Returns the display name of a ledger category.
 pub fn category_name(category: Category) -> &'static str {
     match category {
         Category::SubscriptionPayment => "payments",
@@ -59,31 +59,31 @@ pub fn category_name(category: Category) -> &'static str {
     }
 }
 
-/// A whole number.
+/// Formats a whole number.
 pub fn whole(value: f64) -> String {
     grouped(value + 0.0, 0)
 }
 
-/// A number with as many decimals as it needs, at most two.
+/// Formats a number with at most two decimals.
 pub fn number(value: f64) -> String {
     let value = value + 0.0;
     grouped(value, if value.fract() == 0.0 || value.abs() >= 10_000.0 { 0 } else { 2 })
 }
 
-/// From the least to the greatest, rounded outward: `18 to 87`.
+/// Formats a range, rounded outward: `18 to 87`.
 pub fn range(least: f64, most: f64, decimals: usize) -> String {
     let unit = (0..decimals).fold(1.0, |unit, _| unit * 10.0);
-    // What is a whole number of units but for the last bits is one.
+    // Ignores rounding errors in whole numbers of units.
     let (least, most) = ((least * unit + 1e-9).floor() / unit, (most * unit - 1e-9).ceil() / unit);
     format!("{} to {}", grouped(least, decimals), grouped(most, decimals))
 }
 
-/// A difference of shares in percentage points: `9.3 pt`. Shares are never compared in percent of each other.
+/// Formats a difference of shares in percentage points: `9.3 pt`. Shares are never compared in relative percent.
 pub fn points(difference: f64, decimals: usize) -> String {
     format!("{} pt", grouped(100.0 * difference, decimals))
 }
 
-/// A value on an axis, without zeros that say nothing: `1.5M`, `200k`, `0`.
+/// Formats an axis label without trailing zeros: `1.5M`, `200k`, `0`.
 pub fn tick(value: f64) -> String {
     let text = compact(value);
     let (digits, suffix) = match text.find(|letter: char| letter.is_ascii_alphabetic()) {
@@ -97,7 +97,7 @@ pub fn tick(value: f64) -> String {
     format!("{digits}{suffix}")
 }
 
-/// Dollars on an axis.
+/// Formats an axis label in dollars.
 pub fn dollar_tick(value: f64) -> String {
     let sign = if value < 0.0 { "-" } else { "" };
     format!("{sign}${}", tick(value.abs()))

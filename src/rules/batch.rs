@@ -1,4 +1,4 @@
-//! What every waiting thread would be sent by rules: the first rule that means a thread answers it.
+//! Applies rules to all waiting threads: each thread is answered by the first rule that matches it.
 
 use serde_json::{Value, json};
 
@@ -9,45 +9,45 @@ use novamind_session::identifiers::Plan;
 use novamind_session::{CompanyNames, Session};
 use novamind_tools::{Refusal, ToolId};
 
-/// What a thread would be sent.
+/// Answer to a thread.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Reply {
-    /// Plans at prices.
+    /// An offer of plans and prices.
     Offer(Vec<(Plan, f64)>),
-    /// Its end.
+    /// A rejection, which ends the thread.
     Rejection,
 }
 
-/// A thread, the rule that means it, and what it would be sent, or why nothing.
+/// A thread with its matching rule and answer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RuledThread {
     /// The thread.
     pub thread: AskingThread,
-    /// Place of the rule; none where no rule means it.
+    /// Index of the matching rule; `None` if no rule matches.
     pub rule: Option<usize>,
-    /// What it would be sent, or why nothing.
+    /// The answer, or the reason for sending none.
     pub reply: Result<Reply, &'static str>,
 }
 
-/// Sums over the threads of a rule.
+/// Totals over the threads of a rule.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Sums {
-    /// Threads that are sent something.
+    /// Number of threads that receive an answer.
     pub companies: u32,
-    /// Their seats.
+    /// Seats of these threads.
     pub seats: u32,
-    /// What they would pay at most, dollars a month.
+    /// Largest possible revenue from them, dollars a month.
     pub monthly: f64,
-    /// What of it comes from companies whose compute is known, and that compute, dollars a month.
+    /// Part of this revenue from enterprises with known compute cost, and that cost, dollars a month.
     known: (f64, f64),
-    /// Offers with a plan whose quota does not cover the company.
+    /// Number of offers that include a plan whose quota does not cover the enterprise's usage.
     pub above_quota: u32,
-    /// Threads that are sent nothing.
+    /// Number of threads that receive no answer.
     pub skipped: u32,
 }
 
 impl Sums {
-    /// Share of the payments that compute leaves; none where no compute is known.
+    /// Returns the share of revenue left after compute; `None` if no compute cost is known.
     pub fn margin(&self) -> Option<f64> {
         (self.known.0 > 0.0).then(|| 1.0 - self.known.1 / self.known.0)
     }
@@ -74,7 +74,7 @@ impl Sums {
     }
 
     fn in_words(&self, rejects: bool) -> String {
-        let noun = if self.companies == 1 { "company" } else { "companies" };
+        let noun = if self.companies == 1 { "enterprise" } else { "enterprises" };
         let seats = if self.seats == 1 { "seat" } else { "seats" };
         let count = |value: u32| grouped(f64::from(value), 0);
         let mut words = format!("{} {noun}, {} {seats}", count(self.companies), count(self.seats));
@@ -85,7 +85,7 @@ impl Sums {
                 .map_or(String::new(), |margin| format!(", margin after compute {}", percent(margin, 0)));
         }
         if self.above_quota > 0 {
-            words += &format!(", {} above the quota of a plan offered", count(self.above_quota));
+            words += &format!(", {} above the quota of an offered plan", count(self.above_quota));
         }
         if self.skipped > 0 {
             words += &format!(", {} skipped", count(self.skipped));
@@ -94,21 +94,21 @@ impl Sums {
     }
 }
 
-/// What rules do with every thread that waits.
+/// Result of applying rules to all waiting threads.
 #[derive(Debug, Clone)]
 pub struct Batch {
-    /// The rules, in their order.
+    /// The rules, in order.
     pub rules: Vec<Rule>,
-    /// Every thread, in the order in which they end.
+    /// All threads, by deadline.
     pub threads: Vec<RuledThread>,
-    /// Sums by rule, then those of threads that no rule means.
+    /// Totals by rule, followed by those of threads without a rule.
     pub sums: Vec<Sums>,
 }
 
-/// The calls by which rules answer every company that waits.
+/// Returns the tool calls with which rules answer all waiting enterprises.
 ///
 /// # Errors
-/// `rules_not_readable`; the database cannot be asked.
+/// Returns `rules_not_readable`, or the error of a failed database query.
 pub fn answers_to_companies(text: &str, session: &mut Session) -> Result<Vec<(ToolId, Value)>, Refusal> {
     let rules =
         super::parse(text).map_err(|problem| Refusal::at("rules", "rules_not_readable", problem.text))?;
@@ -117,7 +117,7 @@ pub fn answers_to_companies(text: &str, session: &mut Session) -> Result<Vec<(To
 }
 
 impl Batch {
-    /// What rules do with threads.
+    /// Applies rules to threads.
     pub fn of(rules: Vec<Rule>, threads: Vec<AskingThread>, market: &Market) -> Batch {
         let threads: Vec<RuledThread> =
             threads.into_iter().map(|thread| ruled(&rules, thread, market)).collect();
@@ -128,7 +128,7 @@ impl Batch {
         Batch { rules, threads, sums }
     }
 
-    /// The calls that send it: offers, then rejections; none where nothing is sent.
+    /// Returns the tool calls: offers, then rejections. Empty if nothing is sent.
     pub fn calls(&self) -> Vec<(ToolId, Value)> {
         let (mut offers, mut ends) = (Vec::new(), Vec::new());
         for ruled in &self.threads {
@@ -148,7 +148,7 @@ impl Batch {
         calls.map(|(tool, deals)| (tool, json!({ "deals": deals }))).collect()
     }
 
-    /// A line for each rule, and one for threads that no rule means.
+    /// Returns a line for each rule, and one for threads without a rule.
     pub fn summary(&self) -> Vec<String> {
         let rule = |(at, rule): (usize, &Rule)| {
             let sums = self.sums[at].in_words(rule.action == Action::Reject);
@@ -157,12 +157,12 @@ impl Batch {
         let mut lines: Vec<String> = self.rules.iter().enumerate().map(rule).collect();
         let others = self.sums[self.rules.len()].skipped;
         if others > 0 {
-            lines.push(format!("–  no rule: {} left as they are", grouped(f64::from(others), 0)));
+            lines.push(format!("–  no rule: {} unanswered", grouped(f64::from(others), 0)));
         }
         lines
     }
 
-    /// Sums by rule for programs.
+    /// Returns the totals by rule as JSON.
     pub fn sums_as_json(&self) -> Vec<Value> {
         let one = |(rule, sums): (&Rule, &Sums)| {
             json!({
@@ -184,7 +184,7 @@ fn json_rounded(value: f64, steps: f64) -> f64 {
 }
 
 impl RuledThread {
-    /// What it would be sent, in words.
+    /// Describes the answer.
     pub fn reply_in_words(&self) -> String {
         match &self.reply {
             Ok(Reply::Offer(lines)) => {
@@ -196,7 +196,7 @@ impl RuledThread {
         }
     }
 
-    /// Its fields for programs.
+    /// Returns the fields as JSON.
     pub fn row(&self, names: &CompanyNames) -> Value {
         let mut row = json!({ "rule": self.rule.map(|at| at + 1), "sends": self.reply_in_words() });
         if let (Value::Object(row), Value::Object(fields)) = (&mut row, self.thread.row(names)) {
@@ -209,7 +209,7 @@ impl RuledThread {
 fn ruled(rules: &[Rule], thread: AskingThread, market: &Market) -> RuledThread {
     let rule = rules.iter().position(|rule| rule.means(&thread));
     let reply = match rule.map(|at| &rules[at].action) {
-        None => Err("no rule means it"),
+        None => Err("no rule matches"),
         Some(Action::Reject) => Ok(Reply::Rejection),
         Some(Action::Accept) => {
             priced(&[OfferLine { plan: None, price: Price::Asked(1.0) }], &thread, market)
@@ -219,16 +219,18 @@ fn ruled(rules: &[Rule], thread: AskingThread, market: &Market) -> RuledThread {
     RuledThread { thread, rule, reply }
 }
 
-/// The lines of an offer at their prices; none is left out, so that nobody gets another offer than the rule says.
+/// Computes the prices of all lines of an offer. If one has no price, no offer is sent.
 fn priced(lines: &[OfferLine], thread: &AskingThread, market: &Market) -> Result<Reply, &'static str> {
     let line = |line: &OfferLine| {
-        let plan = line.plan.or(thread.asked_plan).ok_or("skipped: it has named no plan")?;
+        let plan = line.plan.or(thread.asked_plan).ok_or("skipped: no plan asked for")?;
         let last = || thread.waiting.last_offer.iter().find(|(own, _)| *own == plan).map(|(_, price)| *price);
         let price = match line.price {
             Price::Dollars(price) => price,
-            Price::Asked(factor) => factor * thread.waiting.asked.ok_or("skipped: it has named no price")?,
+            Price::Asked(factor) => factor * thread.waiting.asked.ok_or("skipped: no price asked for")?,
             Price::List(factor) => factor * market.lists[plan as usize],
-            Price::Last(factor) => factor * last().ok_or("skipped: it was not offered that plan last")?,
+            Price::Last(factor) => {
+                factor * last().ok_or("skipped: the last offer did not include that plan")?
+            }
         };
         let price = (price * 100.0).round() / 100.0;
         if price > 0.0 && price.is_finite() {
@@ -306,8 +308,8 @@ mod tests {
         assert_eq!(
             told("offer where asked is not null: asked_plan asked*1.1, A list*0.5"),
             [
-                own(None, "no rule means it"),
-                own(None, "no rule means it"),
+                own(None, "no rule matches"),
+                own(None, "no rule matches"),
                 own(Some(0), "B $22.00 or A $7.00"),
                 own(Some(0), "C $11.00 or A $7.00"),
             ]
@@ -315,8 +317,8 @@ mod tests {
         assert_eq!(
             told("offer where customer in (3, 1): B last_offer*0.5; accept rest"),
             [
-                own(Some(0), "skipped: it was not offered that plan last"),
-                own(Some(1), "skipped: it has named no plan"),
+                own(Some(0), "skipped: the last offer did not include that plan"),
+                own(Some(1), "skipped: no plan asked for"),
                 own(Some(0), "B $15.00"),
                 own(Some(1), "C $10.00"),
             ]
@@ -353,7 +355,7 @@ mod tests {
         let accepted = batch.sums[0];
         assert_eq!((accepted.companies, accepted.seats, accepted.above_quota), (2, 500, 1));
         assert_eq!(accepted.monthly, 200.0 * 20.0 + 300.0 * 10.0);
-        // B: its quota of 1,000 units; C: 3,000 units.
+        // B has a quota of 1,000 units, C of 3,000.
         let compute = 1_000.0 * 30.0 * 0.01 + 3_000.0 * 30.0 * 0.1;
         assert_eq!(accepted.margin(), Some(1.0 - compute / accepted.monthly));
         assert_eq!(batch.sums[1].monthly, 10.0 * 150.0);
@@ -368,7 +370,7 @@ mod tests {
         );
         let lines = batch.summary();
         assert!(
-            lines[0].starts_with("1  accept asked > 0: 2 companies, 500 seats, at most $7,000 a month"),
+            lines[0].starts_with("1  accept asked > 0: 2 enterprises, 500 seats, at most $7,000 a month"),
             "{lines:?}"
         );
     }

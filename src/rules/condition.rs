@@ -1,9 +1,8 @@
-//! Whom a rule means: comparisons of what a thread shows.
+//! Conditions of rules: comparisons with the fields of a thread.
 
 use super::thread::AskingThread;
 use novamind_session::identifiers::Plan;
 
-/// What a condition asks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Field {
     Group,
@@ -19,7 +18,7 @@ pub(super) enum Field {
     Customer,
 }
 
-/// Names of the fields, in the order of the documentation; two have a second name.
+/// Names of the fields, in the order of the documentation; two have an alias.
 pub(super) const FIELDS: [(&str, Field); 13] = [
     ("group", Field::Group),
     ("type", Field::Type),
@@ -36,7 +35,6 @@ pub(super) const FIELDS: [(&str, Field); 13] = [
     ("customer", Field::Customer),
 ];
 
-/// A value of a field.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Value {
     Number(f64),
@@ -44,12 +42,12 @@ pub(super) enum Value {
 }
 
 impl Field {
-    /// Whether its values are words.
+    /// Returns whether the values are words.
     pub(super) fn is_word(self) -> bool {
         matches!(self, Field::Group | Field::Type | Field::AskedPlan)
     }
 
-    /// The value of a thread; none where it has none.
+    /// Returns the value of a thread; `None` if it has none.
     fn of(self, thread: &AskingThread) -> Option<Value> {
         let (own, number) = (&thread.waiting, |value: u32| Value::Number(f64::from(value)));
         Some(match self {
@@ -72,7 +70,6 @@ fn lowest(offer: &[(Plan, f64)]) -> Option<f64> {
     offer.iter().map(|(_, price)| *price).reduce(f64::min)
 }
 
-/// How a value is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Comparison {
     Equal,
@@ -101,7 +98,7 @@ impl Comparison {
     }
 }
 
-/// A condition. A missing value fulfils `is null` alone.
+/// A condition. Only `is null` matches a missing value.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Condition {
     Compared(Field, Comparison, Value),
@@ -111,7 +108,6 @@ pub(super) enum Condition {
 }
 
 impl Condition {
-    /// Whether a thread fulfils it.
     pub(super) fn holds(&self, thread: &AskingThread) -> bool {
         match self {
             Condition::Compared(field, comparison, value) => {

@@ -1,23 +1,23 @@
-//! A filter of threads: conditions as rules have them after `where`.
+//! A filter of threads, with the conditions that rules have after `where`.
 
 use super::condition::Condition;
 use super::grammar::{self, Problem};
 use super::thread::AskingThread;
 
-/// Conditions that a thread has to meet, all of them.
+/// Conditions that a thread must all meet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Filter(Vec<Condition>);
 
 impl Filter {
-    /// Reads conditions joined with `and`, in the grammar of rules.
+    /// Parses conditions joined with `and`, in the grammar of rules.
     ///
     /// # Errors
-    /// The first word that is no condition.
+    /// Returns the first problem and its column.
     pub fn parse(text: &str) -> Result<Filter, Problem> {
         grammar::conditions(text).map(Filter)
     }
 
-    /// Whether a thread meets them.
+    /// Returns whether a thread meets all conditions.
     pub fn means(&self, thread: &AskingThread) -> bool {
         self.0.iter().all(|condition| condition.holds(thread))
     }
@@ -31,9 +31,9 @@ mod tests {
     fn a_filter_is_what_a_rule_says_after_where() {
         assert!(Filter::parse("group = E2 and asked is null and seats >= 1_000").is_ok());
         for (text, column, part) in [
-            ("", 1, "for instance seats >= 500"),
+            ("", 1, "example: seats >= 500"),
             ("seats", 6, "comparison"),
-            ("seats > 3 group = E1", 11, "join more with and"),
+            ("seats > 3 group = E1", 11, "join conditions with and"),
             ("seats > 3 or group = E1", 11, "joined with and"),
         ] {
             let problem = Filter::parse(text).expect_err(text);

@@ -5,30 +5,27 @@ use super::thread::AskingThread;
 use novamind_base::nearest;
 use novamind_session::identifiers::Plan;
 
-/// Lines that an offer may have.
 const MOST_LINES: usize = 3;
-/// Groups of companies that every run knows; those that are found later begin with `D_E`.
+/// Enterprise groups that every run knows. Discovered ones start with `D_E`.
 const FIRST_GROUPS: [&str; 3] = ["E1", "E2", "E3"];
-/// Kinds of threads that can wait.
+/// Kinds of threads that can wait for an answer.
 const KINDS: [&str; 4] = ["new_lead", "churn_prevention", "plan_change", "renegotiation"];
 
-/// A rule: whom it means and what they get.
+/// A rule: conditions and an action.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rule {
-    /// As it was written.
+    /// Source text.
     pub text: String,
     pub(super) conditions: Vec<Condition>,
     pub(super) action: Action,
 }
 
 impl Rule {
-    /// Whether it means a thread.
     pub(super) fn means(&self, thread: &AskingThread) -> bool {
         self.conditions.iter().all(|condition| condition.holds(thread))
     }
 }
 
-/// What a thread gets.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Action {
     Offer(Vec<OfferLine>),
@@ -36,15 +33,13 @@ pub(super) enum Action {
     Reject,
 }
 
-/// A plan at a price.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct OfferLine {
-    /// None: the plan that the company asked for.
+    /// `None` for the plan that the enterprise asked for.
     pub(super) plan: Option<Plan>,
     pub(super) price: Price,
 }
 
-/// A price: dollars, or a factor on another price.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Price {
     Dollars(f64),
@@ -53,19 +48,19 @@ pub(super) enum Price {
     Last(f64),
 }
 
-/// What is wrong with rules, and in which column.
+/// A problem of rules and its column.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Problem {
-    /// What is wrong, and what is near.
+    /// Description, with similar names.
     pub text: String,
-    /// Column, from 1, in characters.
+    /// Column in characters, from 1.
     pub column: usize,
 }
 
-/// Reads rules, which a semicolon or a line end separates.
+/// Parses rules, which are separated by semicolons or line ends.
 ///
 /// # Errors
-/// The first thing that is no rule.
+/// Returns the first problem and its column.
 pub fn parse(text: &str) -> Result<Vec<Rule>, Problem> {
     let tokens = tokens(text)?;
     let mut reader = Reader { text, tokens: &tokens, at: 0 };
@@ -77,33 +72,32 @@ pub fn parse(text: &str) -> Result<Vec<Rule>, Problem> {
         }
         rules.push(reader.rule()?);
         if !reader.is_at_end() && !reader.take(";") {
-            return Err(reader.problem("a rule ends here: put ; before the next one"));
+            return Err(reader.problem("the rule ends here: separate rules with ;"));
         }
     }
     match rules.is_empty() {
-        true => Err(reader.problem("a rule is expected, for instance offer where asked is null: B 85")),
+        true => Err(reader.problem("a rule is expected, for example offer where asked is null: B 85")),
         false => Ok(rules),
     }
 }
 
-/// Reads conditions alone, as they stand after `where`.
+/// Parses conditions without a rule, as they occur after `where`.
 pub(super) fn conditions(text: &str) -> Result<Vec<Condition>, Problem> {
     let tokens = tokens(text)?;
     let mut reader = Reader { text, tokens: &tokens, at: 0 };
     if reader.is_at_end() {
-        return Err(reader.problem("a condition is missing, for instance seats >= 500"));
+        return Err(reader.problem("a condition is missing, example: seats >= 500"));
     }
     let conditions = reader.joined()?;
     match reader.is_at_end() {
         true => Ok(conditions),
-        false => Err(reader.problem("the conditions end here: join more with and")),
+        false => Err(reader.problem("the conditions end here: join conditions with and")),
     }
 }
 
 #[derive(Debug, Clone, PartialEq)]
 struct Token {
     text: String,
-    /// Bytes.
     from: usize,
     to: usize,
 }
@@ -138,7 +132,7 @@ fn tokens(text: &str) -> Result<Vec<Token>, Problem> {
                     Some(two) => two.len(),
                     None if "<>=:,*()-".contains(letter) => 1,
                     None => {
-                        let text_of = format!("{letter} means nothing in a rule");
+                        let text_of = format!("unexpected character {letter}");
                         return Err(Problem { text: text_of, column: column(text, at) });
                     }
                 }
@@ -184,7 +178,7 @@ impl Reader<'_> {
         Problem { text: text.into(), column: column(self.text, at) }
     }
 
-    /// The problem with the word before.
+    /// Returns a problem with the previous word.
     fn wrong(&mut self, text: impl Into<String>) -> Problem {
         self.at -= 1;
         self.problem(text)
@@ -196,7 +190,7 @@ impl Reader<'_> {
         let known = ["offer", "accept", "reject"];
         if !known.contains(&action.as_str()) {
             let near = or_known(nearest(&action, known.into_iter()), &known);
-            return Err(self.wrong(format!("{action} is no action; {near}")));
+            return Err(self.wrong(format!("unknown action {action}; {near}")));
         }
         let conditions = self.conditions(&action)?;
         let action = match action.as_str() {
@@ -218,14 +212,13 @@ impl Reader<'_> {
                 return Err(self.problem(format!("{action} needs a condition, or rest for all others")));
             }
             Some(":") if !named => {
-                return Err(self.problem("whom this is offered is missing: where …, or rest for all others"));
+                return Err(self.problem("the condition is missing: use where …, or rest for all others"));
             }
             _ => {}
         }
         self.joined()
     }
 
-    /// Conditions that `and` joins.
     fn joined(&mut self) -> Result<Vec<Condition>, Problem> {
         let mut conditions = vec![self.condition()?];
         while self.take("and") {
@@ -233,8 +226,8 @@ impl Reader<'_> {
         }
         match self.peek() {
             Some(word) if word.eq_ignore_ascii_case("or") => Err(self.problem(
-                "or is not understood: conditions are joined with and; in (…) means one of several values, and another \
-                 rule means other threads",
+                "or is not supported: conditions are joined with and; use in (…) for one of several values, and another \
+                 rule for other threads",
             )),
             _ => Ok(conditions),
         }
@@ -246,12 +239,12 @@ impl Reader<'_> {
         let Some((_, field)) = FIELDS.into_iter().find(|(known, _)| *known == lower) else {
             let names: Vec<&str> = FIELDS.iter().map(|(name, _)| *name).collect();
             let near = or_known(nearest(&lower, names.iter().copied()), &names);
-            return Err(self.wrong(format!("{name} is nothing a rule can ask; {near}")));
+            return Err(self.wrong(format!("unknown field {name}; {near}")));
         };
         if self.take("is") {
             let there = self.take("not");
             if !self.take("null") {
-                return Err(self.problem("null is expected: is null, or is not null"));
+                return Err(self.problem("null is expected: is null or is not null"));
             }
             return Ok(if there { Condition::IsThere(field) } else { Condition::IsNull(field) });
         }
@@ -261,14 +254,14 @@ impl Reader<'_> {
         let comparison = self.comparison(field)?;
         if self.take("null") {
             let is = if comparison == Comparison::NotEqual { "is not" } else { "is" };
-            return Err(self.wrong(format!("null is not compared: write {lower} {is} null")));
+            return Err(self.wrong(format!("null cannot be compared: write {lower} {is} null")));
         }
         let value = self.value(field)?;
         self.refuse_comma_in_number()?;
         Ok(Condition::Compared(field, comparison, value))
     }
 
-    /// Refuses `1,000`, in which the comma would separate two numbers.
+    /// Rejects `1,000`, because the comma would separate two numbers.
     fn refuse_comma_in_number(&mut self) -> Result<(), Problem> {
         let [number, comma, more, ..] = &self.tokens[self.at.saturating_sub(1)..] else { return Ok(()) };
         let digits = |token: &Token| token.text.chars().all(|letter| letter.is_ascii_digit());
@@ -293,7 +286,7 @@ impl Reader<'_> {
             _ => return Err(self.problem("a comparison is expected: = != < <= > >=, in, is null")),
         };
         if field.is_word() && !matches!(comparison, Equal | NotEqual) {
-            return Err(self.problem("words are only equal or not: = or !="));
+            return Err(self.problem("words can only be compared with = or !="));
         }
         self.at += 1;
         Ok(comparison)
@@ -301,7 +294,7 @@ impl Reader<'_> {
 
     fn one_of(&mut self, field: Field) -> Result<Condition, Problem> {
         if !self.take("(") {
-            return Err(self.problem("a list is expected, for instance in (E1, E2)"));
+            return Err(self.problem("a list is expected, for example in (E1, E2)"));
         }
         let mut values = vec![self.value(field)?];
         while self.take(",") {
@@ -318,7 +311,7 @@ impl Reader<'_> {
             return Ok(Value::Number(self.number()?));
         }
         let Some(word) = self.word() else { return Err(self.problem("a value is missing")) };
-        // Whether a group is still to be found is not said here.
+        // Does not reveal whether an undiscovered group exists.
         let word = if field == Field::Group { word.to_uppercase() } else { word };
         if word.starts_with("D_E") {
             return Ok(Value::Word(word));
@@ -332,7 +325,7 @@ impl Reader<'_> {
             Some(known) => Ok(Value::Word((*known).to_owned())),
             None => {
                 let near = or_known(nearest(&word, known.iter().copied()), &known);
-                Err(self.wrong(format!("{word} is no such value; {near}")))
+                Err(self.wrong(format!("unknown value {word}; {near}")))
             }
         }
     }
@@ -347,7 +340,7 @@ impl Reader<'_> {
 
     fn lines(&mut self) -> Result<Vec<OfferLine>, Problem> {
         if !self.take(":") {
-            return Err(self.problem("a colon and the offer are missing, for instance : B 85"));
+            return Err(self.problem("a colon and the offer are missing, for example : B 85"));
         }
         let mut lines = vec![self.line()?];
         while self.take(",") {
@@ -364,7 +357,7 @@ impl Reader<'_> {
         let plan = match Plan::parse(&word.to_uppercase()) {
             Some(plan) => Some(plan),
             None if word.eq_ignore_ascii_case("asked_plan") => None,
-            None => return Err(self.wrong(format!("{word} is no plan: A, B, C, or asked_plan"))),
+            None => return Err(self.wrong(format!("unknown plan {word}: use A, B, C or asked_plan"))),
         };
         let price = self.price()?;
         self.refuse_comma_in_number()?;
@@ -381,17 +374,17 @@ impl Reader<'_> {
             return if price > 0.0 {
                 Ok(Price::Dollars(price))
             } else {
-                Err(self.wrong("a price is above 0"))
+                Err(self.wrong("the price must be above 0"))
             };
         }
         if !NAMES.contains(&word.as_str()) {
             let near = or_known(nearest(&word, NAMES.into_iter()), &NAMES);
-            return Err(self.problem(format!("{word} is no price: dollars, or {near}")));
+            return Err(self.problem(format!("unknown price {word}: use dollars, or {near}")));
         }
         self.at += 1;
         let factor = if self.take("*") { self.number()? } else { 1.0 };
         if factor <= 0.0 {
-            return Err(self.wrong("a factor is above 0"));
+            return Err(self.wrong("the factor must be above 0"));
         }
         Ok(match word.as_str() {
             "asked" => Price::Asked(factor),
@@ -401,10 +394,10 @@ impl Reader<'_> {
     }
 }
 
-/// What was meant, or what there is.
+/// Suggests similar names, or lists the known ones.
 fn or_known(near: Vec<&str>, known: &[&str]) -> String {
     match near.is_empty() {
-        true => format!("there are {}", known.join(", ")),
+        true => format!("known: {}", known.join(", ")),
         false => format!("did you mean {}?", near.join(" or ")),
     }
 }
@@ -446,7 +439,7 @@ mod tests {
             ("offer where group > E1: B 3", 19, "= or !="),
             ("offer rest", 11, "colon"),
             ("offer: B 3", 6, "rest for all others"),
-            ("offer rest: D 3", 13, "no plan"),
+            ("offer rest: D 3", 13, "unknown plan"),
             ("offer rest: B -3", 15, "number is expected"),
             ("offer rest: B 0", 15, "above 0"),
             ("offer rest: B aked*2", 15, "did you mean asked"),
@@ -456,9 +449,9 @@ mod tests {
             ("accept asked >= x", 17, "number is expected"),
             ("accept asked is 3", 17, "null"),
             ("accept seats in 3", 17, "list"),
-            ("reject rest reject rest", 13, "put ;"),
-            ("reject where größe > 3", 14, "nothing a rule can ask"),
-            ("reject where seats ? 3", 20, "means nothing"),
+            ("reject rest reject rest", 13, "separate rules with ;"),
+            ("reject where größe > 3", 14, "unknown field"),
+            ("reject where seats ? 3", 20, "unexpected character"),
             ("reject where seats < 1,000", 22, "write 1000 or 1_000"),
             ("offer rest: B 1,000", 15, "write 1000 or 1_000"),
             ("offer where asked = null: B 3", 21, "write asked is null"),
@@ -473,8 +466,8 @@ mod tests {
 
     #[test]
     fn groups_that_nobody_found_are_not_named() {
-        let problem = parse("accept group = D_S0").expect_err("no group of companies");
-        assert!(problem.text.ends_with("there are E1, E2, E3"), "{problem:?}");
+        let problem = parse("accept group = D_S0").expect_err("not an enterprise group");
+        assert!(problem.text.ends_with("known: E1, E2, E3"), "{problem:?}");
         for group in ["D_E01", "d_e99"] {
             assert!(parse(&format!("accept group = {group}")).is_ok(), "{group}");
         }

@@ -1,9 +1,9 @@
-//! Rules that answer companies: one grammar for the console and plain mode, and what every waiting thread would be sent
-//! by it (docs/interfaces/rules.md). Rules send nothing: they become ordinary calls of the two tools for deals.
+//! Rules that answer enterprises (docs/interfaces/rules.md), with one grammar for the console and plain mode. Rules
+//! send nothing themselves: they produce ordinary calls of the two tools for deals.
 //!
-//! `grammar` reads rules, `condition` says whom one means, `filter` takes conditions alone, `thread` is what rules see of
-//! a thread, `batch` is what all threads get, `offer_row` reads the offers of the rows. Everything a rule asks is what the
-//! tables and tools tell every player.
+//! `grammar` parses rules, `condition` matches threads, `filter` parses conditions alone, `thread` contains the
+//! fields of a thread, `batch` applies rules to all threads, and `offer_row` reads offers from database rows.
+//! Conditions use only data that is visible to players.
 
 mod batch;
 mod condition;

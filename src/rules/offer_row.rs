@@ -1,11 +1,11 @@
-//! What a row of a negotiation offers.
+//! Reads the offer of a negotiation's row.
 
 use serde_json::Value;
 
 use novamind_session::identifiers::Plan;
 
-/// Plans and prices that the player offered, and the price that a company named, dollars a month and seat, in the JSON
-/// of a row.
+/// Returns the plans and prices that the player offered, and the price that an enterprise asked for, in dollars a
+/// month and seat, from the JSON of a row.
 pub fn offer_of(json: &str) -> (Vec<(Plan, f64)>, Option<f64>) {
     let value: Value = serde_json::from_str(json).unwrap_or(Value::Null);
     let one = |offer: &Value| {

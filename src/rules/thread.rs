@@ -1,4 +1,4 @@
-//! What rules see of a thread that waits for an answer, and of what the company sells.
+//! Data that rules use: waiting threads and the plans on sale.
 
 use std::collections::BTreeMap;
 
@@ -11,18 +11,17 @@ use novamind_session::identifiers::{Group, Plan};
 use novamind_session::{CompanyNames, Session, WaitingThread};
 use novamind_tools::{Refusal, ToolId};
 
-/// The statement for what companies wrote last: a thread ends a week after it.
+/// Query for the last messages of enterprises. A thread ends a week after its last message.
 pub const LAST_LETTERS: &str = include_str!("../../assets/readings/last_letters.sql");
 
-/// Days of a month of compute.
 const MONTH: f64 = 30.0;
 
-/// The plan that companies named in their newest letter, by thread: with a price, or as the one they would like.
+/// The plan that enterprises named in their latest message, by thread: with a price, or as a wish.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Letters(BTreeMap<u32, Plan>);
 
 impl Letters {
-    /// Reads the answer to [`LAST_LETTERS`].
+    /// Reads the rows of [`LAST_LETTERS`].
     pub fn read(rows: &Rows) -> Letters {
         let plan = |row: &Vec<novamind_database::Cell>| {
             let plan = other_plan_in(text_at(row, 1), Plan::parse(text_at(row, 2)))?;
@@ -32,12 +31,12 @@ impl Letters {
     }
 }
 
-/// The first plan that words name.
+/// Returns the first plan that a text names.
 pub fn plan_in(text: &str) -> Option<Plan> {
     plans_in(text).first().copied()
 }
 
-/// The first plan that words name beside the one a company has: its wish may name both.
+/// Returns the first plan that a text names other than the enterprise's current one, because a wish may name both.
 fn other_plan_in(text: &str, present: Option<Plan>) -> Option<Plan> {
     plans_in(text).into_iter().find(|plan| Some(*plan) != present)
 }
@@ -53,23 +52,23 @@ fn plans_in(text: &str) -> Vec<Plan> {
     lower.match_indices("plan ").filter_map(named).collect()
 }
 
-/// What the company sells, and what a seat uses of it.
+/// Plans on sale and the usage of a seat.
 #[derive(Debug, Clone, Default)]
 pub struct Market {
     /// List prices, dollars a month.
     pub lists: [f64; 3],
     /// Quotas, units a day and customer.
     pub quotas: [f64; 3],
-    /// Compute, dollars a unit.
+    /// Compute cost, dollars a unit.
     pub unit_costs: [f64; 3],
-    /// Measured use.
+    /// Measured usage.
     pub usage: SeatUsage,
-    /// Use by the last study, units a day and seat.
+    /// Usage estimated by the last study, units a day and seat.
     pub studied: BTreeMap<Group, f64>,
 }
 
 impl Market {
-    /// What a run sells today.
+    /// Returns the plans and usage of a run today.
     pub fn of(session: &Session, usage: SeatUsage) -> Market {
         let (core, terms) = (&session.settings().core, session.company().tool_limits());
         let unit_cost = |plan: Plan| {
@@ -86,31 +85,31 @@ impl Market {
         }
     }
 
-    /// Units a day that all seats of a company would use.
+    /// Returns the usage of all seats of an enterprise, units a day.
     pub fn wanted(&self, group: &str, seats: u32) -> Option<f64> {
         let studied = || Group::parse(group).and_then(|group| self.studied.get(&group)).copied();
         self.usage.measured(group).or_else(studied).map(|units| units * f64::from(seats))
     }
 
-    /// Dollars a month for the compute of a company on a plan: all its seats share one quota.
+    /// Returns the compute cost of an enterprise on a plan, dollars a month. All its seats share one quota.
     pub fn compute(&self, plan: Plan, wanted: f64) -> f64 {
         wanted.min(self.quotas[plan as usize]) * MONTH * self.unit_costs[plan as usize]
     }
 }
 
-/// A thread that waits, with everything that rules ask.
+/// A waiting thread with all fields that rules use.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AskingThread {
-    /// What the run says.
+    /// The thread in the session.
     pub waiting: WaitingThread,
-    /// The plan that the company named with its price, or asked the price of.
+    /// Plan that the enterprise named with its price, or whose price it asked for.
     pub asked_plan: Option<Plan>,
-    /// Units a day that all its seats would use: the quota that covers them.
+    /// Usage of all its seats, units a day: the quota that covers them.
     pub needed_quota: Option<f64>,
 }
 
 impl AskingThread {
-    /// Of a thread that waits.
+    /// Collects the fields of a waiting thread.
     pub fn of(waiting: &WaitingThread, letters: &Letters, market: &Market) -> AskingThread {
         let only = || match waiting.last_offer.as_slice() {
             [(plan, _)] if waiting.asked.is_some() => Some(*plan),
@@ -123,10 +122,10 @@ impl AskingThread {
         }
     }
 
-    /// Every thread that waits, with what the run sells. Asks the database two questions, which are not recorded.
+    /// Returns all waiting threads and the plans on sale. Runs two queries, which are not recorded.
     ///
     /// # Errors
-    /// The database cannot be read.
+    /// Returns an error if the database cannot be read.
     pub fn all(session: &mut Session) -> Result<(Vec<AskingThread>, Market), Refusal> {
         let letters = Letters::read(&session.look_into_database(LAST_LETTERS)?);
         let usage = SeatUsage::read(&session.look_into_database(SEAT_USAGE)?);
@@ -136,7 +135,7 @@ impl AskingThread {
         Ok((threads.collect(), market))
     }
 
-    /// Its fields for programs, with the name of its company.
+    /// Returns the fields as JSON, with the name of the enterprise.
     pub fn row(&self, names: &CompanyNames) -> Value {
         let mut row = json!({ "company": names.of(self.waiting.customer) });
         if let (Value::Object(row), Value::Object(fields)) = (&mut row, json!(self.waiting)) {
@@ -151,7 +150,6 @@ impl AskingThread {
     }
 }
 
-/// The tools that rules become calls of.
 pub(super) const TOOLS: [ToolId; 2] = [ToolId::SendEnterpriseDeal, ToolId::RejectEnterpriseDeal];
 
 #[cfg(test)]

@@ -71,7 +71,7 @@ fn each_look_at_the_truth_is_a_line_and_changes_no_hash() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = in_run(runs.path(), Mode::Debug);
     console.press("7 v");
-    console.shows("the truth of day 21");
+    console.shows("true values of day 21");
     console.press("right up . esc");
     drop(console);
     let folder = folder_of(runs.path());
@@ -87,7 +87,7 @@ fn a_replay_shows_the_truth_of_its_moment_once_the_run_is_over() {
     drop(session);
     let mut console = replayed(runs.path(), SIZES[2], Goal::Week(2));
     console.press("7 v");
-    console.shows("the truth of day 14");
+    console.shows("true values of day 14");
     drop(console);
     let folder = folder_of(runs.path());
     let after = lines_afterwards(&folder, &recorded(&folder)).expect("lines");

@@ -139,7 +139,7 @@ const FIGURES: [Figure; 29] = [
          WHERE issues.status = 'open' AND subscriptions.status = 'subscribed'",
     ),
     Figure(
-        &["# waiting for you", "# awaiting your response", "# companies wait for an answer"],
+        &["# waiting for you", "# awaiting your response", "# enterprises wait for an answer"],
         "SELECT count(*) FROM (SELECT max(turn_number), day, sender, closed FROM enterprise_turns \
          GROUP BY thread_id HAVING sender <> 'agent' AND closed = 0 AND day > {to} - 7)",
     ),
@@ -389,6 +389,6 @@ fn figures_are_read_where_they_stand() {
     assert_eq!(of("cash $9 (-$7 over the last week)"), [("cash", 9.0), ("cash change", -7.0)]);
     assert_eq!(of("subscribers 65 → 150; of it 7"), [("subscribers", 150.0)]);
     assert_eq!(of("New Individual Subscribers: 3"), [("new subscribers", 3.0)]);
-    assert_eq!(of("! 4 companies wait for an answer (9 seats)"), [("# waiting for you", 4.0)]);
+    assert_eq!(of("! 4 enterprises wait for an answer (9 seats)"), [("# waiting for you", 4.0)]);
     assert_eq!(of("operations: 0 → 100 $/day · cash lasts 12 weeks"), [("runway", 12.0)]);
 }

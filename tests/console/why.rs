@@ -22,7 +22,7 @@ fn playing(runs: &Path, mode: Mode, size: (u16, u16)) -> Console {
 fn asks_why(console: &mut Console, heading: &str) {
     console.press("; w");
     console.shows(heading);
-    console.shows("composition and chance");
+    console.shows("residual");
     console.press("esc");
 }
 

@@ -96,13 +96,13 @@ fn a_customer_who_left_is_shown_as_plain_mode_shows_it_with_its_day_in_the_title
     console.press(&format!("e '{customer}' enter"));
     console.shows(&format!("Customer {customer}"));
     console.shows(&format!("day {day} of 56"));
-    console.shows(&format!("left on day {day}"));
+    console.shows(&format!("cancelled on day {day}"));
     console.press("left");
     console.shows(&format!("day {} of 56", day - 1.0));
     console.press(&format!("g d '{}' enter", day - 7.0));
     console.shows(&format!("day {} of 56", day - 7.0));
     let screen = console.screen();
-    assert!(!screen.contains("left on day"), "{screen}");
+    assert!(!screen.contains("cancelled on day"), "{screen}");
 }
 
 #[test]
@@ -133,7 +133,7 @@ fn a_held_factor_shows_the_expected_leads_beside() {
     console.press("esc = '0.5' enter");
     console.shows("with R 1, D 0.5: λ");
     console.press("= up =");
-    assert!(!console.screen().contains("instead of"), "{}", console.screen());
+    assert!(!console.screen().contains("rather than"), "{}", console.screen());
 }
 
 #[test]
@@ -155,7 +155,7 @@ fn a_debug_run_runs_to_a_breakpoint_that_is_set_on_the_screen() {
     assert!(!console.screen().contains("cash < 0"), "{}", console.screen());
     console.press("r '28' enter");
     console.shows("day 42");
-    console.shows("breakpoint 1 was true on all these days and the day before them");
+    console.shows("breakpoint 1 was true on all these days and on the day before");
     console.press("e 'leads(S2)>=1' enter delete e 'cash<850000' enter r '20' enter");
     console.shows("stopped on day");
     drop(console);

@@ -137,7 +137,9 @@ fn a_part_that_is_judged_by_another_figure_than_cash_is_told_in_it() {
     let (before, with) = parting.effect.simulated().and_then(|effect| effect.judged).expect("an effect");
     assert_eq!((Some(before), Some(with)), (own.last().map(|own| own.1), good.last().map(|good| good.1)));
     let markdown = debrief_as_markdown(&found);
-    for said in ["Recurring revenue on day 14: yours $", "the good play's $", "Recurring revenue by week"] {
+    for said in
+        ["Recurring revenue on day 14: yours $", "the reference play's $", "Recurring revenue by week"]
+    {
         assert!(markdown.contains(said), "{said}:\n{markdown}");
     }
     let of_cash = debrief(&played(&folder.path().join("other"), 30, 0));
@@ -183,9 +185,14 @@ fn pages_tell_everything_and_stand_alone() {
     let folder = tempfile::tempdir().expect("a folder");
     let found = debrief(&played(folder.path(), 30, 0));
     let (markdown, html) = (debrief_as_markdown(&found), debrief_as_html(&found));
-    for said in
-        ["good play", "set_prices", "Open the shop", "A billion in the bank", "Somebody bought", "Conversion"]
-    {
+    for said in [
+        "reference play",
+        "set_prices",
+        "Open the shop",
+        "A billion in the bank",
+        "Somebody bought",
+        "Conversion",
+    ] {
         assert!(markdown.contains(said), "{said}:\n{markdown}");
         assert!(html.contains(said), "{said}");
     }

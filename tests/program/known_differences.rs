@@ -165,7 +165,7 @@ const IN_INSTRUCTIONS: [Example; 6] = [
     }),
     ("the cost of a late reply to an", |stage| {
         stage.manual_says("send_enterprise_deal", &["of the relationship", "the thread ends"]);
-        stage.term_says("turn", &["of its relationship for each further day"]);
+        stage.term_says("turn", &["of the relationship for each further day"]);
     }),
 ];
 

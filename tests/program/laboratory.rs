@@ -121,7 +121,7 @@ fn opponents_play_the_world_of_a_run_that_is_over() {
         assert_eq!((&own["cash"], &own["day"]), (&alone["cash"], &alone["day"]), "{name}");
     }
     let text = home.run(&["lab", "opponents", "latest"]).out;
-    assert!(text.contains("same luck") && text.contains("harvest-late"), "{text}");
+    assert!(text.contains("same seed") && text.contains("harvest-late"), "{text}");
     let other = Home::new();
     other.two_weeks();
     other.run(&["lab", "opponents", "latest"]).fails(1, &["End this run first"]);

@@ -41,7 +41,7 @@ fn the_results_table_holds_comparable_runs_and_says_why_others_are_not_there() {
 
     let text = home.run(&["lab", "table", "--by", "policy"]).out;
     assert!(
-        text.contains("2 finished runs are not ranked: another length (1), changed parameters (1)."),
+        text.contains("2 finished runs are not ranked: different length (1), changed parameters (1)."),
         "{text}"
     );
     assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");

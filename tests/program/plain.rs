@@ -517,7 +517,7 @@ run 3 until subscribers(S1) < 0   # never
         "breakpoint 1: subscribers(S1) >= 20; run DAYS stops there",
         "\nstopped on day ",
         " >= 20 (day before ",
-        "mood of ",
+        "satisfaction of ",
         "last false on day ",
     ] {
         assert!(text.contains(part), "{part} is missing in\n{text}");
@@ -665,7 +665,7 @@ fn the_curve_of_a_group_is_told_with_what_leads_would_do() {
     let (said, _) =
         play(runs.path(), &["--seed", "7", "--days", "28", "--mode", "debug"], "curve S1\ncurve D_S05\n");
     assert!(
-        said.contains("by the truth of day 0") && said.contains("D_S05: quality that leads require"),
+        said.contains("by true values of day 0") && said.contains("D_S05: quality that leads require"),
         "{said}"
     );
 }

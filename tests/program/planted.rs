@@ -77,7 +77,7 @@ fn the_page_of_answers_says_what_the_program_shows() {
         match day.strip_prefix("day ") {
             Some(day) => {
                 assert!(
-                    diff.starts_with(&format!("the runs differ from day {day} on")),
+                    diff.starts_with(&format!("the runs differ from day {day}")),
                     "{}: {diff}",
                     row.number
                 );

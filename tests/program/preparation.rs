@@ -185,15 +185,15 @@ fn the_protocol_tells_what_was_drawn_and_every_limit() {
         format!(
             "4 labels are assigned (in blocks of 4, drawn with seed 5, BLAKE3 hash of assignment.csv {digest})"
         ),
-        "Conditions: A, B. They label and balance participants; the program is the same".to_owned(),
-        "The practice is played by the same rules".to_owned(),
-        "| The practice begins with the tour (console) | yes |".to_owned(),
+        "Conditions: A, B. They label and balance participants. The program is the same".to_owned(),
+        "The practice uses the same rules".to_owned(),
+        "| The practice starts with the tour (console) | yes |".to_owned(),
         "| Active minutes per week of the company | 20 |".to_owned(),
-        "| Active minutes per sitting | no limit |".to_owned(),
+        "| Active minutes per session | no limit |".to_owned(),
         "warned | 3 |".to_owned(),
-        "of a week: it is filed with the naive projection".to_owned(),
-        "once 60 s have passed without one".to_owned(),
-        "no; single forecasts and what came stand in".to_owned(),
+        "of a week: it is filed with naive forecasts".to_owned(),
+        "if no other follows within 60 s".to_owned(),
+        "no; the week report and the Cash and Journal screens".to_owned(),
     ] {
         assert!(said.contains(&words), "{words} is missing in\n{said}");
     }

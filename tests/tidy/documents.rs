@@ -382,3 +382,22 @@ fn nothing_refers_to_what_is_not_here() {
     }
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
+
+/// Returns a lowercase term without the plural ending.
+fn singular(term: &str) -> String {
+    let term = term.to_lowercase();
+    term.strip_suffix('s').filter(|stem| !stem.ends_with('s')).unwrap_or(&term).to_owned()
+}
+
+#[test]
+fn glossary_titles_are_vocabulary_terms() {
+    let page = Page::read(root().join("docs/vocabulary.md"));
+    let terms = page.prose().filter_map(|(_, line)| cells(line).map(|cells| cells[0].to_owned()));
+    let terms: BTreeSet<String> =
+        terms.flat_map(|cell| cell.split(", ").map(singular).collect::<Vec<_>>()).collect();
+    let glossary = fs::read_to_string(root().join("assets/glossary.toml")).expect("the glossary");
+    let glossary: Table = glossary.parse().expect("TOML");
+    let titles = glossary["term"].as_array().expect("terms").iter().filter_map(|term| term["title"].as_str());
+    let missing: Vec<&str> = titles.filter(|title| !terms.contains(&singular(title))).collect();
+    assert!(missing.is_empty(), "add these terms to docs/vocabulary.md or change their titles: {missing:?}");
+}

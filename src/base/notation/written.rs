@@ -1,4 +1,4 @@
-//! Arguments as they are written in a line: `name=value` or values alone, with commas and brackets or without
+//! Parser for the arguments of a line: `name=value` or values alone, with or without commas and brackets
 //! (docs/interfaces/plain-mode.md#grammar).
 
 use serde_json::Value;
@@ -6,28 +6,28 @@ use serde_json::Value;
 /// One argument.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Argument {
-    /// Its name, if it was given one.
+    /// Name, if the argument has one.
     pub key: Option<String>,
-    /// Its value.
+    /// Value.
     pub value: Value,
-    /// Column where it begins, from 1.
+    /// Column of its first character, from 1.
     pub column: usize,
 }
 
-/// What is wrong with a line, and in which column.
+/// A problem of a line and its column.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Problem {
-    /// What is wrong.
+    /// Description.
     pub text: String,
-    /// Column, from 1, in characters.
+    /// Column in characters, from 1.
     pub column: usize,
 }
 
 impl Argument {
-    /// The whole number that it is.
+    /// Returns the value as a whole number.
     ///
     /// # Errors
-    /// It is none, or has a name.
+    /// Returns a problem if the value is not a whole number, or if the argument has a name.
     pub fn whole_number(&self) -> Result<u32, Problem> {
         let number = self.value.as_u64().filter(|_| self.key.is_none());
         let number = number.and_then(|number| u32::try_from(number).ok());
@@ -36,45 +36,45 @@ impl Argument {
 }
 
 impl Problem {
-    /// A problem of arguments as a whole.
+    /// Returns a problem of all arguments together, at the first one.
     pub fn of(arguments: &[Argument], text: &str) -> Problem {
         Problem { text: text.to_owned(), column: arguments.first().map_or(1, |argument| argument.column) }
     }
 }
 
-/// Reads a line from left to right.
+/// A reader of a line from left to right.
 pub struct Reader<'a> {
     line: &'a str,
     at: usize,
 }
 
 impl<'a> Reader<'a> {
-    /// At the beginning of a line.
+    /// Returns a reader at the start of a line.
     pub fn of(line: &'a str) -> Reader<'a> {
         Reader { line, at: 0 }
     }
 
-    /// What is still to be read.
+    /// Returns the unread part of the line.
     pub fn rest(&self) -> &'a str {
         &self.line[self.at..]
     }
 
-    /// Column of it, from 1.
+    /// Returns the column of the next character, from 1.
     pub fn column(&self) -> usize {
         self.line[..self.at].chars().count() + 1
     }
 
-    /// A problem in this column.
+    /// Returns a problem in the current column.
     pub fn problem(&self, text: impl Into<String>) -> Problem {
         Problem { text: text.into(), column: self.column() }
     }
 
-    /// Passes over blanks.
+    /// Skips blanks.
     pub fn skip_blanks(&mut self) {
         self.at += self.rest().len() - self.rest().trim_start().len();
     }
 
-    /// A word of letters, digits, dots, dashes and underscores; empty where there is none.
+    /// Reads a word of letters, digits, dots, dashes and underscores; empty if there is none.
     pub fn word(&mut self) -> String {
         let is_word = |letter: char| letter.is_alphanumeric() || ['_', '.', '-'].contains(&letter);
         let end = self.rest().find(|letter| !is_word(letter)).unwrap_or(self.rest().len());
@@ -83,10 +83,10 @@ impl<'a> Reader<'a> {
         word
     }
 
-    /// The arguments up to the end of the line.
+    /// Reads the arguments up to the end of the line.
     ///
     /// # Errors
-    /// What is wrong, and where.
+    /// Returns the first problem and its column.
     pub fn arguments(&mut self) -> Result<Vec<Argument>, Problem> {
         self.skip_blanks();
         let opened = self.rest().starts_with('(');
@@ -129,11 +129,10 @@ impl<'a> Reader<'a> {
         if self.rest().is_empty() || self.rest().starts_with('#') {
             Ok(arguments)
         } else {
-            Err(self.problem("nothing can follow the closing bracket but a comment"))
+            Err(self.problem("only a comment can follow the closing bracket"))
         }
     }
 
-    /// `key = value`, or a value alone.
     fn argument(&mut self) -> Result<Argument, Problem> {
         let (column, start) = (self.column(), self.at);
         let word = self.word();
@@ -189,7 +188,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// What a bare word stands for: null, true, false, a number (also 1_000_000), otherwise itself.
+/// Returns the value of an unquoted word: null, true, false, a number (such as 1_000_000), otherwise a string.
 fn plain_value(text: &str) -> Value {
     let digits = text.replace('_', "");
     let json = digits.strip_prefix('+').unwrap_or(&digits);
@@ -204,7 +203,7 @@ fn plain_value(text: &str) -> Value {
     }
 }
 
-/// Byte offset of serde_json's line and column.
+/// Returns the byte offset of serde_json's line and column.
 fn offset_of(text: &str, line: usize, column: usize) -> usize {
     let before: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
     (before + column.saturating_sub(1)).min(text.len())

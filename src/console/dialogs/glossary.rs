@@ -221,9 +221,9 @@ mod tests {
         let company = Company::of(&played(2));
         for (word, caption) in [
             ("fit", "estimates of day 0"),
-            ("cohort", "Share of a cohort that is still there"),
-            ("spill-over", "a change of reputation of 0.1"),
-            ("quality bank", "without additions"),
+            ("cohort", "Share of a cohort that remains"),
+            ("spill-over", "a reputation change of 0.1"),
+            ("quality bank", "base quality"),
             ("network leads", "Leads of all groups by week"),
         ] {
             let mut dialog = Glossary::new(company.numbers.clone());

@@ -247,8 +247,7 @@ mod tests {
         let mut dialog = answered(Ok(told()));
         for (width, height) in [(60, 16), (80, 24), (120, 40), (200, 60)] {
             let picture = dialog_picture(&dialog, &company, width, height);
-            for words in
-                ["195 → 1,137", "price", "+938", "████████", "rivals", "+4", "composition and chance"]
+            for words in ["195 → 1,137", "price", "+938", "████████", "rivals", "+4", "residual"]
             {
                 assert!(picture.contains(words), "{words} in {picture}");
             }

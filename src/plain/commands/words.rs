@@ -198,9 +198,9 @@ mod tests {
         let run = Session::create(NewRun::default(), &Configuration::shipped()).expect("a run");
         for (word, part) in [
             ("participation curve", "a budget of $50"),
-            ("fit", "Shaded lies the mean floor"),
+            ("fit", "Shaded: mean required quality"),
             ("spill-over", "reaches a group"),
-            ("quality-bank", "without additions      "),
+            ("quality-bank", "base quality      "),
         ] {
             let told = glossary(word, &run).as_text();
             assert!(told.contains(part) && told.contains("explain TERM for more"), "{word}: {told}");

@@ -1,5 +1,5 @@
-//! A run on a card that can be handed on: the curve of its cash, its turning points, three numbers, and what it was
-//! played in. Text of 80 columns, or a drawing in the proportions of a shared picture.
+//! A card that summarizes a run for sharing: curve of cash, turning points, three figures and the scenario. As text
+//! of 80 columns or as a picture.
 
 mod svg;
 mod text;
@@ -11,39 +11,33 @@ use novamind_base::notation::printable;
 use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::Ended;
 
-/// A fact with what it is.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct CardFigure {
-    /// The figure.
+    /// Formatted value.
     value: String,
-    /// What it is, and of which day.
     name: String,
 }
 
-/// What stands on the card.
 #[derive(Debug, Clone, PartialEq)]
 struct Card {
     headline: String,
-    /// Rank among the published results, where it can be compared.
+    /// Rank among the published results, if comparable.
     rank: Option<String>,
-    /// Cash at the end of each day, dollars.
     cash_by_day: Vec<f64>,
-    /// Days on which cash was highest and lowest.
+    /// Days of the highest and the lowest cash.
     marks: Vec<u32>,
     turning_points: Vec<CardFigure>,
     numbers: [CardFigure; 3],
-    /// That a language model lent its voice, where one did.
+    /// Remark about a language model used as voice.
     voice: Option<&'static str>,
     /// Scenario, seed, version.
     source: String,
 }
 
-/// The card as text of at most 80 columns.
 pub fn as_text(story: &Story) -> String {
     text::write(&Card::of(story))
 }
 
-/// The card as a drawing of 1200 by 630.
 pub fn as_svg(story: &Story) -> String {
     svg::draw(&Card::of(story))
 }
@@ -90,8 +84,8 @@ fn headline(story: &Story) -> String {
     match story.seen.ended {
         Some(Ended::Horizon) => format!("{cash} after {day} days"),
         Some(Ended::Bankruptcy) => format!("Bankrupt on day {day}"),
-        Some(Ended::Abandoned) => format!("Given up on day {day} with {cash}, without a score"),
-        Some(Ended::Lesson) => format!("{cash} when the lesson was over on day {day}"),
+        Some(Ended::Abandoned) => format!("Abandoned on day {day} with {cash}, without a score"),
+        Some(Ended::Lesson) => format!("{cash} at the end of the lesson on day {day}"),
         None => format!("{cash} on day {day} of {}", story.seen.last_day),
     }
 }
@@ -99,13 +93,12 @@ fn headline(story: &Story) -> String {
 fn voice(story: &Story) -> Option<&'static str> {
     let model = story.seen.voice.as_ref()?;
     Some(match (model.words, model.judge) {
-        (true, true) => "A language model worded the posts of others and judged those of the player.",
-        (_, false) => "A language model worded the posts of others.",
-        (false, true) => "A language model judged the posts of the player.",
+        (true, true) => "A language model worded customers' posts and judged the player's posts.",
+        (_, false) => "A language model worded customers' posts.",
+        (false, true) => "A language model judged the player's posts.",
     })
 }
 
-/// In which world it was played, and by which version.
 fn source(story: &Story) -> String {
     let seed = story.seen.seed.map_or(String::new(), |seed| format!(" · seed {seed}"));
     let changed = if story.seen.has_own_parameters { " · changed parameters" } else { "" };
@@ -131,7 +124,6 @@ mod tests {
         }
     }
 
-    /// Cash at the end of each day, as the ledger has it.
     fn cash_of_ledger(session: &mut Session, last: u32) -> Vec<f64> {
         let until = |day| format!("SELECT total(amount) FROM ledger WHERE day <= {day}");
         (0..=last).map(|day| number(session, &until(day))).collect()
@@ -176,7 +168,7 @@ mod tests {
         let grew = (1..=5).filter(|week| cash[week * 7] > cash[week * 7 - 7]).count();
         assert_eq!(card.numbers[2].value, format!("{grew} of 5"));
         assert_eq!(card.headline, format!("{} after 35 days", money(cash[35])));
-        assert_eq!(card.rank, None, "35 days are not 500");
+        assert_eq!(card.rank, None, "35 days instead of 500");
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The card as a drawing that stands alone: no style, script or font of elsewhere.
+//! The card as a self-contained SVG, without external styles, scripts or fonts.
 
 use std::fmt::Write;
 
@@ -6,12 +6,10 @@ use super::{Card, CardFigure};
 use crate::words::dollar_tick;
 use novamind_base::notation::escaped_html;
 
-/// Size in which pictures are shared.
+/// Common size of shared pictures.
 const SIZE: (f64, f64) = (1200.0, 630.0);
 const EDGE: f64 = 60.0;
-/// Upper and lower end of the curve.
 const CURVE: (f64, f64) = (200.0, 400.0);
-/// Most points of the curve.
 const POINTS: usize = 360;
 
 const PAPER: &str = "#14171c";
@@ -20,7 +18,6 @@ const DIM: &str = "#9aa3ae";
 const LINE: &str = "#2fa3b5";
 const MARK: &str = "#e0b04a";
 
-/// The card.
 pub fn draw(card: &Card) -> String {
     let (width, height) = SIZE;
     let mut svg = format!(
@@ -47,7 +44,6 @@ pub fn draw(card: &Card) -> String {
     svg
 }
 
-/// The facts in a sentence, for whoever cannot see them.
 fn described(card: &Card) -> String {
     let facts = card.turning_points.iter().chain(&card.numbers);
     facts.map(|fact| format!("{}: {}", fact.name, fact.value)).collect::<Vec<_>>().join("; ")
@@ -62,7 +58,6 @@ fn text(svg: &mut String, (x, y): (f64, f64), size: f64, colour: &str, bold: boo
     );
 }
 
-/// Facts beside each other: figures, and what they are below.
 fn row(svg: &mut String, y: f64, facts: &[CardFigure]) {
     for (at, fact) in facts.iter().enumerate() {
         let x = EDGE + at as f64 * 370.0;
@@ -71,7 +66,6 @@ fn row(svg: &mut String, y: f64, facts: &[CardFigure]) {
     }
 }
 
-/// The place of a day's cash: across, down.
 fn place(card: &Card, day: usize, most: f64) -> (f64, f64) {
     let last = card.cash_by_day.len().saturating_sub(1).max(1) as f64;
     let share = (card.cash_by_day[day] / most).clamp(0.0, 1.0);

@@ -1,20 +1,16 @@
-//! The card as text: a curve of blocks, facts below it.
+//! The card as text: a curve of block characters with figures below.
 
 use super::{Card, CardFigure};
 use crate::words::dollar_tick;
 
-/// Columns and rows of the curve.
 const COLUMNS: usize = 66;
 const ROWS: usize = 10;
-/// Width of the labels beside it.
 const LABELS: usize = 10;
-/// Width of a fact.
 const FACT: usize = 26;
 
-/// Parts of a cell that is filled from below, by eighths.
+/// Characters filled from below, by eighths.
 const EIGHTHS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
-/// The card.
 pub fn write(card: &Card) -> String {
     let mut lines = vec![format!("NovaMind · {}", card.source), String::new(), card.headline.clone()];
     lines.extend(card.rank.clone());
@@ -27,7 +23,6 @@ pub fn write(card: &Card) -> String {
     lines.join("\n") + "\n"
 }
 
-/// Figures in a row, their names below.
 fn facts(facts: &[CardFigure]) -> [String; 2] {
     let row = |text: fn(&CardFigure) -> &String| {
         facts.iter().map(|fact| format!("{:<FACT$}", text(fact))).collect::<String>().trim_end().to_owned()
@@ -35,7 +30,7 @@ fn facts(facts: &[CardFigure]) -> [String; 2] {
     [row(|fact| &fact.value), row(|fact| &fact.name)]
 }
 
-/// Columns from zero to the cash of a day.
+/// Draws columns from zero to the cash of each day.
 fn curve(cash: &[f64]) -> Vec<String> {
     let last = cash.len().saturating_sub(1);
     let most = cash.iter().copied().fold(0.0, f64::max);

@@ -1,19 +1,19 @@
-//! The curves of a class, and a decision against a figure.
+//! Curves of a class and scatter plots of a decision against a figure.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{CASH, ClassView, RankedStudent};
 use novamind_course::ClassRun;
 
-/// A line or a point of a student in a drawing.
+/// The line or point of a student in a drawing.
 pub struct StudentPoints<'a> {
-    /// Label; none for the good play.
+    /// Label; `None` for the reference play.
     pub label: Option<&'a str>,
-    /// Where it lies.
+    /// Points.
     pub points: Vec<(f64, f64)>,
 }
 
-/// Cash by day in a part, of the good play and of every student in the ranking.
+/// Returns cash by day in a part, for the reference play and every ranked student.
 pub fn curves<'a>(
     view: &'a ClassView<'a>,
     ranking: &[RankedStudent<'a>],
@@ -29,17 +29,16 @@ pub fn curves<'a>(
     good.into_iter().chain(students).collect()
 }
 
-/// A decision against a figure.
+/// A decision plotted against a figure.
 pub struct Scatter<'a> {
-    /// The decision: its mean over the weeks in which the student decided.
+    /// Decision: its mean over the weeks with decisions of the student.
     pub decision: String,
-    /// The figure of the last week.
+    /// Figure in the last week.
     pub figure: String,
-    /// A point for each student.
+    /// One point for each student.
     pub points: Vec<StudentPoints<'a>>,
 }
 
-/// What of each student counts in a part.
 fn runs_of<'a>(ranking: &[RankedStudent<'a>], part: u32) -> Vec<(&'a str, &'a ClassRun)> {
     let of_part = |student: &RankedStudent<'a>| {
         let run = student.runs.iter().find(|run| run.evidence.part == part).copied()?;
@@ -48,13 +47,13 @@ fn runs_of<'a>(ranking: &[RankedStudent<'a>], part: u32) -> Vec<(&'a str, &'a Cl
     ranking.iter().filter_map(of_part).collect()
 }
 
-/// Names of the decisions of a part in which students differ, the most different first; parts are counted from 1.
+/// Returns the decisions of a part in which students differ, most different first. Parts are numbered from 1.
 pub fn decisions(ranking: &[RankedStudent<'_>], part: u32) -> Vec<String> {
     let runs = runs_of(ranking, part);
     by_difference(&runs.iter().map(|(_, run)| &run.evidence.decisions).collect::<Vec<_>>())
 }
 
-/// Names of the figures of a part in which students differ, cash first, then the most different.
+/// Returns the figures of a part in which students differ: cash first, then the most different.
 pub fn figures(ranking: &[RankedStudent<'_>], part: u32) -> Vec<String> {
     let runs = runs_of(ranking, part);
     let all = by_difference(&runs.iter().map(|(_, run)| &run.evidence.figures).collect::<Vec<_>>());
@@ -62,7 +61,7 @@ pub fn figures(ranking: &[RankedStudent<'_>], part: u32) -> Vec<String> {
     std::iter::once(CASH.to_owned()).chain(others).collect()
 }
 
-/// The scatter of a part; none where students do not differ in any decision.
+/// Returns the scatter plot of a part; `None` if students do not differ in any decision.
 pub fn scatter<'a>(view: &ClassView<'a>, ranking: &[RankedStudent<'a>], part: u32) -> Option<Scatter<'a>> {
     let decision = view.shown.decision.clone().or_else(|| decisions(ranking, part).into_iter().next())?;
     let figure = view.shown.figure.clone().unwrap_or_else(|| CASH.to_owned());
@@ -77,8 +76,8 @@ pub fn scatter<'a>(view: &ClassView<'a>, ranking: &[RankedStudent<'a>], part: u3
     Some(Scatter { decision, figure, points })
 }
 
-/// Names of the values in which students differ: the one with more different values first, then the one whose values lie
-/// further apart as a share of the largest. Of two that reach equally far, more values tell more.
+/// Returns the values in which students differ: those with more distinct values first, then those with the larger
+/// range relative to the maximum.
 fn by_difference(all: &[&BTreeMap<String, f64>]) -> Vec<String> {
     let spread = |name: &String| {
         let values = || all.iter().map(|own| own.get(name).copied().unwrap_or(0.0));

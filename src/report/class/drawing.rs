@@ -1,4 +1,4 @@
-//! Curves and points of a class as SVG: all of them grey, those of one student lit by the page's style.
+//! SVG drawings of a class: all students in grey; the page's style highlights one.
 
 use std::fmt::Write;
 
@@ -14,21 +14,19 @@ const RIGHT: f64 = 14.0;
 const TOP: f64 = 12.0;
 const BOTTOM: f64 = 44.0;
 
-/// What is drawn.
 pub(super) struct Drawing<'a> {
-    /// What a reader who does not see it is told.
     pub title: String,
-    /// What stands across.
+    /// Label of the horizontal axis.
     pub across: String,
     /// Lines or points.
     pub points: &'a [StudentPoints<'a>],
-    /// Whether the points of a student are joined.
+    /// Whether the points of a student are connected.
     pub is_line: bool,
-    /// Whether a line is drawn where both values are the same.
+    /// Whether the diagonal of equal values is drawn.
     pub has_diagonal: bool,
 }
 
-/// Draws; `class_of` names the class and the title of a student's mark.
+/// Draws the points. `class_of` returns the CSS class and the title of a student's marks.
 pub(super) fn draw(drawing: &Drawing<'_>, class_of: &dyn Fn(&str) -> Option<(String, String)>) -> String {
     let all = || drawing.points.iter().flat_map(|own| &own.points).copied();
     let both = drawing.has_diagonal;
@@ -78,11 +76,11 @@ pub(super) fn draw(drawing: &Drawing<'_>, class_of: &dyn Fn(&str) -> Option<(Str
             row(to)
         );
     }
-    // The good play lies above the others, below the lit one.
+    // The reference play covers the other students; the highlighted student covers the reference play.
     let (good, students): (Vec<_>, Vec<_>) = drawing.points.iter().partition(|own| own.label.is_none());
     for own in students.into_iter().chain(good) {
         let (class, name) = match own.label {
-            None => ("good".to_owned(), "good play".to_owned()),
+            None => ("good".to_owned(), "reference play".to_owned()),
             Some(label) => match class_of(label) {
                 Some(named) => named,
                 None => continue,

@@ -1,23 +1,23 @@
-//! What students guessed, against what came of it.
+//! Students' guesses compared with the outcomes.
 
 use super::ClassView;
 use super::curves::StudentPoints;
 use novamind_course::{ClassRun, GuessForm};
 
-/// A question of the lesson and the answers of the class.
+/// A question of the lesson with the answers of the class.
 pub struct AskedClass<'a> {
-    /// The part, counted from 1.
+    /// Part, numbered from 1.
     pub part: u32,
     /// The question.
     pub question: &'a str,
-    /// The choices; empty where a number was asked for.
+    /// Choices; empty if the question asks for a number.
     pub choices: &'a [String],
-    /// Label, guess, outcome, of everybody who has both.
+    /// Label, guess and outcome of every student who has both.
     pub answers: Vec<(&'a str, f64, f64)>,
 }
 
 impl<'a> AskedClass<'a> {
-    /// Each student: the guess across, what came of it up.
+    /// Returns a point for each student: guess horizontally, outcome vertically.
     pub fn points(&self) -> Vec<StudentPoints<'a>> {
         let answers = self.answers.iter();
         answers
@@ -29,7 +29,7 @@ impl<'a> AskedClass<'a> {
     }
 }
 
-/// The questions of the lesson, in order.
+/// Returns the questions of the lesson, in order.
 pub fn asked<'a>(view: &'a ClassView<'a>) -> Vec<AskedClass<'a>> {
     let parts = view.lesson.map(|lesson| lesson.plan.parts.as_slice()).unwrap_or_default();
     let mut all = Vec::new();
@@ -50,7 +50,7 @@ pub fn asked<'a>(view: &'a ClassView<'a>) -> Vec<AskedClass<'a>> {
     all
 }
 
-/// The first run of each student in a part: whoever tries again knows the outcome.
+/// Returns the first run of each student in a part, because later tries know the outcome.
 fn first_tries<'a>(view: &'a ClassView<'a>, part: u32) -> impl Iterator<Item = &'a ClassRun> {
     let of_part: Vec<&ClassRun> = view.whole().filter(|run| run.evidence.part == part).collect();
     let is_first = |at: usize| at == 0 || of_part[at - 1].label != of_part[at].label;
@@ -59,7 +59,6 @@ fn first_tries<'a>(view: &'a ClassView<'a>, part: u32) -> impl Iterator<Item = &
     firsts.into_iter()
 }
 
-/// How many guesses among choices were right in a run.
 pub(super) fn right(view: &ClassView<'_>, run: &ClassRun) -> usize {
     let part = view.part_of(run);
     let steps = part.map(|part| part.steps.as_slice()).unwrap_or_default();
@@ -70,18 +69,18 @@ pub(super) fn right(view: &ClassView<'_>, run: &ClassRun) -> usize {
     all.filter(|(_, own)| own.guess.is_some() && own.guess == own.outcome).count()
 }
 
-/// A pitfall that somebody met.
+/// A pitfall that at least one student triggered.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PitfallMet<'a> {
-    /// Its name.
+    /// Name of the pitfall.
     pub name: &'a str,
-    /// What is said of it.
+    /// Its explanation.
     pub say: String,
-    /// How many students met it.
+    /// Number of students who triggered it.
     pub students: usize,
 }
 
-/// The pitfalls that students met, the most frequent first.
+/// Returns the triggered pitfalls, most frequent first.
 pub fn pitfalls<'a>(view: &'a ClassView<'a>) -> Vec<PitfallMet<'a>> {
     let known = view.lesson.map(|lesson| lesson.plan.pitfalls.as_slice()).unwrap_or_default();
     let met_by = |name: &str| {

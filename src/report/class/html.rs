@@ -1,5 +1,5 @@
-//! The class as one HTML page for the projector: no script, no other file. One student is lit: their name is chosen with
-//! the mouse or with the arrow keys, for the names are a group of radio buttons.
+//! The class as a self-contained HTML page for a projector, without scripts. Radio buttons highlight one student, by
+//! mouse or arrow keys.
 
 use std::fmt::Write;
 
@@ -13,10 +13,9 @@ use crate::html::STYLE;
 use crate::words::{count, money};
 use novamind_base::notation::{escaped_html, percent};
 
-/// What the page has besides the style of every report.
 const OWN_STYLE: &str = include_str!("../../../assets/class.css");
 
-/// The page.
+/// Returns the page.
 pub fn as_html(view: &ClassView<'_>) -> String {
     let ranking = ranked(view);
     let lit = view.shown.lit.as_deref().or(ranking.first().map(|first| first.label));
@@ -33,7 +32,7 @@ pub fn as_html(view: &ClassView<'_>) -> String {
         count(finished as u32, "run"),
         escaped_html(&view.measure())
     );
-    // The buttons stand before everything that they light, which style can only say of what follows.
+    // CSS can only style elements after the buttons, so the buttons come first.
     for (at, student) in ranking.iter().enumerate() {
         let checked = if Some(student.label) == lit { " checked=\"checked\"" } else { "" };
         let name = escaped_html(&student.name);
@@ -63,14 +62,13 @@ pub fn as_html(view: &ClassView<'_>) -> String {
             .map(|own| format!("<li>{}</li>\n", escaped_html(&finding_in_words(own))));
         let _ = write!(
             page,
-            "<section>\n<h2>Not counted, or not there</h2>\n<ul>\n{}</ul>\n</section>\n",
+            "<section>\n<h2>Not counted or missing</h2>\n<ul>\n{}</ul>\n</section>\n",
             wrong.collect::<String>()
         );
     }
     page + "</main>\n</body>\n</html>\n"
 }
 
-/// The style that lights the student whose button is chosen.
 fn lighting(students: usize) -> String {
     let rule = |at: usize| {
         format!(
@@ -83,7 +81,6 @@ fn lighting(students: usize) -> String {
     (0..students).map(rule).collect()
 }
 
-/// Class and name of the marks of a student.
 fn marks<'a>(ranking: &'a [RankedStudent<'a>]) -> impl Fn(&str) -> Option<(String, String)> + 'a {
     |label| {
         let at = ranking.iter().position(|own| own.label == label)?;
@@ -106,10 +103,10 @@ fn drawings(view: &ClassView<'_>, ranking: &[RankedStudent<'_>], part: u32) -> S
     let curves =
         Drawing { title, across: "day".to_owned(), points: &all, is_line: true, has_diagonal: false };
     let mut text = format!("<section>\n<h2>{}</h2>\n", escaped_html(heading));
-    text += &figure("Cash, dollars; the dashed curve is the good play", &curves, ranking);
+    text += &figure("Cash, dollars; the dashed curve is the reference play", &curves, ranking);
     if let Some(scatter) = scatter(view, ranking, part) {
-        let caption = format!("{} at the end against {}", scatter.figure, scatter.decision);
-        let across = format!("{}, mean of the weeks", scatter.decision);
+        let caption = format!("Final {} by {}", scatter.figure, scatter.decision);
+        let across = format!("{}, mean over the weeks", scatter.decision);
         let points = &scatter.points;
         let drawing = Drawing { title: caption.clone(), across, points, is_line: false, has_diagonal: false };
         text += &figure(&caption, &drawing, ranking);
@@ -118,7 +115,7 @@ fn drawings(view: &ClassView<'_>, ranking: &[RankedStudent<'_>], part: u32) -> S
 }
 
 fn table(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
-    let score = if view.lesson.is_some() { "Of good play" } else { "Cash" };
+    let score = if view.lesson.is_some() { "Of reference" } else { "Cash" };
     let mut text = format!(
         "<section>\n<h2>Ranking</h2>\n<div class=\"wide\"><table>\n<thead><tr><th scope=\"col\" class=\"number\">Rank</th>\
          <th scope=\"col\">Student</th><th scope=\"col\" class=\"number\">{score}</th><th scope=\"col\" class=\"number\">Tries\
@@ -147,8 +144,8 @@ fn guesses(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
     for asked in asked(view).into_iter().filter(|asked| !asked.answers.is_empty()) {
         if asked.choices.is_empty() {
             let points = asked.points();
-            let title = format!("{} What came of it, against the guess", asked.question);
-            let across = "guess; on the line it was right".to_owned();
+            let title = format!("{} Outcome by guess", asked.question);
+            let across = "guess; points on the line were exact".to_owned();
             let drawing = Drawing { title, across, points: &points, is_line: false, has_diagonal: true };
             text += &figure(asked.question, &drawing, ranking);
             continue;
@@ -175,7 +172,6 @@ fn pitfalls_met(view: &ClassView<'_>) -> String {
     )
 }
 
-/// Counts as bars; a few of them stand out.
 fn bars(rows: impl Iterator<Item = (String, usize, bool)>, all: usize) -> String {
     let bar = |(name, count, own): (String, usize, bool)| {
         format!(

@@ -1,4 +1,4 @@
-//! What came back of a class: the ranking, the table, the words, and a page for the projector (docs/lessons/classes.md).
+//! Results of a class: ranking, table, text, and a page for a projector (docs/lessons/classes.md).
 
 mod curves;
 mod drawing;
@@ -23,36 +23,35 @@ use novamind_course::{
     ranked_goal, share_of_good,
 };
 
-/// The figure of the scatter that is shown where none is named.
 const CASH: &str = "cash";
 
-/// A class and what came back of it, as it is to be shown.
+/// A class with its submissions and display options.
 pub struct ClassView<'a> {
-    /// What was handed out.
+    /// The class.
     pub class: &'a Class,
-    /// The lesson, if that was handed out.
+    /// The lesson, if one was handed out.
     pub lesson: Option<&'a Arc<Lesson>>,
-    /// What came back.
+    /// The submissions.
     pub collection: &'a ClassCollection,
-    /// How it is shown.
+    /// Display options.
     pub shown: Shown,
 }
 
-/// How a class is shown.
+/// Display options of a class.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Shown {
-    /// Ranks stand for labels.
+    /// Shows ranks in place of labels.
     pub hides_names: bool,
-    /// The student whose curve is lit; the first of the ranking if none is named.
+    /// Highlighted student; `None` for the first of the ranking.
     pub lit: Option<String>,
-    /// The decision of the scatter; the one in which students differ most if none is named.
+    /// Decision of the scatter plot; `None` for the one in which students differ most.
     pub decision: Option<String>,
-    /// The figure of the scatter; cash if none is named.
+    /// Figure of the scatter plot; `None` for cash.
     pub figure: Option<String>,
 }
 
 impl<'a> ClassView<'a> {
-    /// A class as it is to be shown.
+    /// Returns a view of a class.
     pub fn of(class: &'a CollectedClass, shown: Shown) -> ClassView<'a> {
         let CollectedClass { class, lesson, collection } = class;
         ClassView { class, lesson: lesson.as_ref(), collection, shown }
@@ -60,10 +59,10 @@ impl<'a> ClassView<'a> {
 }
 
 impl ClassView<'_> {
-    /// Checks that what is to be shown is there.
+    /// Checks that the selected student, decision and figure exist.
     ///
     /// # Errors
-    /// Nobody has the label; no run has the decision or the figure.
+    /// Returns an error if no student has the label, or no run has the decision or the figure.
     pub fn check(&self) -> Result<(), String> {
         if let Some(label) = &self.shown.lit
             && self.class.student(label).is_none()
@@ -86,7 +85,6 @@ impl ClassView<'_> {
         Ok(())
     }
 
-    /// Runs that were found whole and are the student's own.
     fn whole(&self) -> impl Iterator<Item = &ClassRun> {
         self.collection
             .runs
@@ -94,32 +92,32 @@ impl ClassView<'_> {
             .filter(|run| matches!(run.verdict, RunVerdict::Finished | RunVerdict::NotFinished))
     }
 
-    /// How many parts are played.
+    /// Returns the number of parts.
     pub fn parts(&self) -> u32 {
         self.lesson.map_or(1, |lesson| lesson.plan.parts.len() as u32)
     }
 
-    /// Title of a part, where there are several; parts are counted from 1.
+    /// Returns the title of a part if there are several. Parts are numbered from 1.
     pub fn part_title(&self, part: u32) -> Option<&str> {
         let own = self.lesson?.plan.parts.get((part as usize).checked_sub(1)?)?;
         (self.parts() > 1).then_some(own.title.as_str())
     }
 
-    /// What is played, in short.
+    /// Returns a short title: the lesson or the run.
     pub fn title(&self) -> String {
         match (self.lesson, &self.class.run) {
             (Some(lesson), _) => lesson.plan.title.clone(),
-            (None, Some(past)) => format!("Run {} from day {} on", past.run, past.day),
+            (None, Some(past)) => format!("Run {} from day {}", past.run, past.day),
             (None, None) => String::new(),
         }
     }
 
-    /// The part that a run plays.
     fn part_of(&self, run: &ClassRun) -> Option<&LessonPart> {
         self.lesson?.plan.parts.get((run.evidence.part as usize).checked_sub(1)?)
     }
 
-    /// Value of a goal as a share of what the good play has on the same seed; steps and goals are counted from 0.
+    /// Returns the value of a goal relative to the reference play on the same seed. Steps and goals are numbered from
+    /// 0.
     fn share_of_goal(&self, run: &ClassRun, step: usize, goal: usize) -> Option<f64> {
         let value = |own: &Evidence| own.steps.get(step)?.goals.get(goal)?.value;
         let part = self.part_of(run)?;
@@ -127,15 +125,14 @@ impl ClassView<'_> {
         share_of_good(Some(bound), value(&run.evidence)?, value(self.good(run)?)?)
     }
 
-    /// The good play on the seed of a run.
     fn good(&self, run: &ClassRun) -> Option<&Evidence> {
         let of = &run.evidence;
         let all = self.collection.references.iter().map(|reference| &reference.evidence);
         all.into_iter().find(|good| (good.part, good.seed) == (of.part, of.seed))
     }
 
-    /// The lesson's measure of a run that is over, as a share of what the good play has on the same seed: its last goal, or
-    /// cash where it has none.
+    /// Returns the lesson's measure of a finished run relative to the reference play on the same seed: the last goal,
+    /// or cash if it has none.
     fn share(&self, run: &ClassRun) -> Option<f64> {
         let part = self.part_of(run)?;
         match ranked_goal(part) {
@@ -144,25 +141,28 @@ impl ClassView<'_> {
         }
     }
 
-    /// What the ranking goes by, in words.
+    /// Describes the measure of the ranking.
     pub fn measure(&self) -> String {
         let Some(lesson) = self.lesson else {
             return "cash on the last day that every run has reached".to_owned();
         };
         let of_part = |part: &LessonPart| match ranked_goal(part) {
-            Some((step, goal)) => lesson.filled(&part.steps[step].goals[goal].text),
-            None => "cash at the end".to_owned(),
+            Some((step, goal)) => {
+                // The goal's target, after the colon, is not part of the measure.
+                let text = lesson.filled(&part.steps[step].goals[goal].text);
+                text.split_once(": ").map_or(text.clone(), |(measure, _)| measure.to_owned())
+            }
+            None => "final cash".to_owned(),
         };
         let goals: Vec<String> = lesson.plan.parts.iter().map(of_part).collect();
-        let mean =
-            if goals.len() > 1 { "; the mean of the parts, 0 for one that is not finished" } else { "" };
-        format!("{}, as a share of the good play on the same seed{mean}", goals.join(" / "))
+        let mean = if goals.len() > 1 { "; mean over the parts, 0 for unfinished ones" } else { "" };
+        format!("{}, as a percentage of the reference play on the same seed{mean}", goals.join(" / "))
     }
 }
 
 fn unknown(what: &str, name: &str, near: Vec<&str>) -> String {
     match near.is_empty() {
         true => format!("the class has no {what} {name}"),
-        false => format!("the class has no {what} {name}; near it: {}", near.join(", ")),
+        false => format!("the class has no {what} {name}; similar: {}", near.join(", ")),
     }
 }

@@ -1,4 +1,4 @@
-//! The ranking of a class: by the lesson's measure, relative to the good play on the same seed.
+//! The ranking of a class: by the lesson's measure, relative to the reference play on the same seed.
 
 use super::ClassView;
 use novamind_course::{ClassRun, RunVerdict};
@@ -8,15 +8,15 @@ use novamind_course::{ClassRun, RunVerdict};
 pub struct RankedStudent<'a> {
     /// Label.
     pub label: &'a str,
-    /// What is shown for the label: the rank, where names are hidden.
+    /// Displayed name: the rank if labels are hidden.
     pub name: String,
-    /// Share of the good play, or dollars where there is none.
+    /// Score relative to the reference play, or dollars without a lesson.
     pub score: f64,
-    /// The best finished try of each part; where no lesson was handed out, the one run.
+    /// Best finished try of each part; without a lesson, the only run.
     pub runs: Vec<&'a ClassRun>,
 }
 
-/// Students by their score, the best first; those of whom nothing counts are not among them.
+/// Returns students by score, the best first. Omits students without a counted run.
 pub fn ranked<'a>(view: &'a ClassView<'a>) -> Vec<RankedStudent<'a>> {
     let day = common_day(view);
     let of_student = |label: &'a str| {
@@ -36,7 +36,6 @@ pub fn ranked<'a>(view: &'a ClassView<'a>) -> Vec<RankedStudent<'a>> {
     all
 }
 
-/// Mean over the parts, and the best try of each.
 fn score_in_lesson<'a>(view: &'a ClassView<'a>, label: &str) -> Option<(f64, Vec<&'a ClassRun>)> {
     let own: Vec<&ClassRun> =
         view.whole().filter(|run| run.label == label && run.verdict == RunVerdict::Finished).collect();
@@ -61,7 +60,6 @@ fn score_of_run<'a>(view: &'a ClassView<'a>, label: &str, day: u32) -> Option<(f
     Some((cash, vec![run]))
 }
 
-/// The last day that every whole run has reached.
 fn common_day(view: &ClassView<'_>) -> u32 {
     view.whole().map(|run| run.evidence.day).min().unwrap_or(0)
 }

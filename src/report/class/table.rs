@@ -1,10 +1,9 @@
-//! `class.csv`: a row for each run that came back, and what its columns mean.
+//! `class.csv`: a row for each submitted run, and descriptions of its columns.
 
 use super::ClassView;
 use crate::tables::column::{Column, columns};
 use novamind_course::{ClassRun, LessonStep, StepEvidence};
 
-/// A row: a run of the class.
 struct ClassRow<'a> {
     view: &'a ClassView<'a>,
     run: &'a ClassRun,
@@ -24,47 +23,47 @@ fn goals_met(step: &StepEvidence) -> usize {
     step.goals.iter().filter(|goal| goal.met).count()
 }
 
-/// The columns for a class. Numbers of steps and goals follow their names, counted from 1. There are no units.
+// Steps and goals in column names are numbered from 1. No column has a unit.
 fn columns<'a>(view: &ClassView<'_>) -> Vec<Column<ClassRow<'a>>> {
     let mut columns = columns! { row: ClassRow<'a>;
-        "label", "", "label of the student, as the first line of the run says it, or as the place of the run names it"
+        "label", "", "label of the student, from the first line of the run or from its path"
             => row.run.label;
         "run", "", "name of the run" => row.run.run;
-        "part", "", "part of the lesson, counted from 1; 1 where a run was handed out" => row.run.evidence.part;
+        "part", "", "part of the lesson, numbered from 1; 1 if a run was handed out" => row.run.evidence.part;
         "seed", "", "seed of the run" => row.run.evidence.seed;
-        "day", "", "last day that was simulated" => row.run.evidence.day;
-        "tries", "", "which try it is: the highest of its steps" => row.run.evidence.tries;
-        "hints", "", "hints that were asked for" => row.run.evidence.hints;
+        "day", "", "last simulated day" => row.run.evidence.day;
+        "tries", "", "number of the try: the highest of its steps" => row.run.evidence.tries;
+        "hints", "", "hints used" => row.run.evidence.hints;
         "goals", "", "goals of the part" => row.steps().iter().map(|step| step.goals.len()).sum::<usize>();
-        "goals_reached", "", "goals that were reached" => row.run.evidence.steps.iter().map(goals_met).sum::<usize>();
-        "guesses_right", "", "guesses among choices that were right" => super::guesses::right(row.view, row.run);
-        "pitfalls", "", "names of the pitfalls that were met, in their order" => row.run.evidence.pitfalls.join(" ");
-        "cash", "", "cash at the end, dollars" => written(row.run.evidence.cash.last().map(|(_, cash)| *cash));
-        "of_good", "", "the measure of the lesson as a share of the good play on the same seed: 1 is as good; empty where \
+        "goals_reached", "", "goals reached" => row.run.evidence.steps.iter().map(goals_met).sum::<usize>();
+        "guesses_right", "", "correct guesses among choices" => super::guesses::right(row.view, row.run);
+        "pitfalls", "", "names of the pitfalls triggered, in order" => row.run.evidence.pitfalls.join(" ");
+        "cash", "", "final cash, dollars" => written(row.run.evidence.cash.last().map(|(_, cash)| *cash));
+        "of_good", "", "the measure of the lesson relative to the reference play on the same seed: 1 is equal; empty if \
          there is none" => written(row.view.share(row.run));
         "verdict", "", "finished, not finished, altered, twice, other lesson, other hand-out or unknown; only finished runs \
          are ranked" => row.run.verdict.id();
     };
     for step in 0..most_steps(view) {
         columns.extend(columns! { row: ClassRow<'a>;
-            format!("guess_{}", step + 1), "", "what was guessed before the step; of choices the number of the one taken"
+            format!("guess_{}", step + 1), "", "guess before the step; for choices, the number of the selected one"
                 => written(row.step(step).and_then(|own| own.guess));
-            format!("outcome_{}", step + 1), "", "what came of it; of choices the number of the right one"
+            format!("outcome_{}", step + 1), "", "outcome; for choices, the number of the correct one"
                 => written(row.step(step).and_then(|own| own.outcome));
         });
     }
     for (step, goal) in goals(view) {
         columns.extend(columns! { row: ClassRow<'a>;
-            format!("goal_{}_{}", step + 1, goal + 1), "", "what the goal was measured at"
+            format!("goal_{}_{}", step + 1, goal + 1), "", "measured value of the goal"
                 => written(row.step(step).and_then(|own| own.goals.get(goal)?.value));
-            format!("goal_of_good_{}_{}", step + 1, goal + 1), "", "that as a share of the good play on the same seed"
+            format!("goal_of_good_{}_{}", step + 1, goal + 1), "", "measured value relative to the reference play on the same seed"
                 => written(row.view.share_of_goal(row.run, step, goal));
         });
     }
     columns
 }
 
-/// What the columns mean, as a table with its heading first.
+/// Returns the descriptions of the columns, with a header.
 pub fn columns_table(view: &ClassView<'_>) -> Vec<Vec<String>> {
     let heading = vec!["column".to_owned(), "meaning".to_owned()];
     let all = columns(view)
@@ -73,7 +72,7 @@ pub fn columns_table(view: &ClassView<'_>) -> Vec<Vec<String>> {
     std::iter::once(heading).chain(all).collect()
 }
 
-/// The table, its heading first.
+/// Returns the table, with a header.
 pub fn rows(view: &ClassView<'_>) -> Vec<Vec<String>> {
     let columns = columns(view);
     let heading = columns.iter().map(|column| column.heading.name.clone().into_owned()).collect();
@@ -91,7 +90,6 @@ fn most_steps(view: &ClassView<'_>) -> usize {
     view.lesson.map_or(0, |lesson| lesson.plan.parts.iter().map(|part| part.steps.len()).max().unwrap_or(0))
 }
 
-/// Step and goal of every goal that some part has, counted from 0.
 fn goals(view: &ClassView<'_>) -> Vec<(usize, usize)> {
     let parts = view.lesson.map(|lesson| lesson.plan.parts.as_slice()).unwrap_or_default();
     let most = |step: usize| {

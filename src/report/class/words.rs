@@ -1,4 +1,4 @@
-//! What came back of a class, as text.
+//! Results of a class as text.
 
 use super::ClassView;
 use super::curves::{curves, scatter};
@@ -9,50 +9,48 @@ use crate::words::{count, money};
 use novamind_base::notation::{compact, percent, printable};
 use novamind_course::{ClassFinding, RunVerdict};
 
-/// What should be known, in a sentence that says what to do.
+/// Describes a finding and what to do about it.
 pub fn finding_in_words(finding: &ClassFinding) -> String {
     match finding {
         ClassFinding::Unreadable { label, path, problem } => {
             let who = label.as_ref().map(|label| format!("{label}: ")).unwrap_or_default();
             let place = path.display().to_string();
-            // Most problems name their place.
+            // Most problems name their path.
             let place = if problem.contains(&place) { String::new() } else { format!("{place}: ") };
-            format!("{who}not taken: {place}{problem}")
+            format!("{who}not collected: {place}{problem}")
         }
         ClassFinding::Altered { label, run, problem } => {
-            format!("{label}: run {run} was altered and does not count. {problem}. Ask for the run again")
+            format!(
+                "{label}: run {run} was altered and does not count. {problem}. Ask the student to send it again"
+            )
         }
         ClassFinding::Twice { label, run, paths } => {
             let paths: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
             format!(
-                "{label}: run {run} was played twice, and neither record goes on from the other: {}. Neither is ranked; ask \
-                 which one counts, and collect without the other",
+                "{label}: run {run} has two records, and neither continues the other: {}. Neither is ranked; ask \
+                 which one counts, and collect again without the other",
                 paths.join(" and ")
             )
         }
         ClassFinding::OtherLesson { label, run } => {
-            format!(
-                "{label}: run {run} was played by another lesson, or another version of it, and does not count"
-            )
+            format!("{label}: run {run} belongs to a different lesson or version of it and does not count")
         }
         ClassFinding::OtherHandout { label, run, of: Some(of) } => {
             format!(
-                "{label}: run {run} began with the hand-out of {of} and does not count; find out who played it"
+                "{label}: run {run} started from the handout of {of} and does not count; find out who played it"
             )
         }
         ClassFinding::OtherHandout { label, run, of: None } => {
-            format!(
-                "{label}: run {run} has another past than the one that was handed out, and does not count"
-            )
+            format!("{label}: run {run} does not continue the run that was handed out and does not count")
         }
         ClassFinding::Unknown { label, run, path } => {
-            let who = label.as_deref().unwrap_or("nobody in particular");
+            let who = label.as_deref().unwrap_or("unknown student");
             format!(
-                "{who}: run {run} in {} did not begin with a hand-out of this class and does not count",
+                "{who}: run {run} in {} did not start from a handout of this class and does not count",
                 path.display()
             )
         }
-        ClassFinding::Missing { label } => format!("{label}: nothing came back"),
+        ClassFinding::Missing { label } => format!("{label}: no submission"),
         ClassFinding::NotFinished { label, parts } if parts.len() == 1 && parts[0] == 1 => {
             format!("{label}: not finished")
         }
@@ -62,22 +60,22 @@ pub fn finding_in_words(finding: &ClassFinding) -> String {
         }
         ClassFinding::AlteredHandout { label } => {
             format!(
-                "{label}: the hand-out in the folder of the class was altered; runs that began before are not touched by that"
+                "{label}: the handout in the class folder was altered; runs started before that are not affected"
             )
         }
     }
 }
 
-/// What came back, in short, and what is wrong.
+/// Summarizes the submissions and lists the findings.
 pub fn collected_in_words(view: &ClassView<'_>) -> String {
     let collection = view.collection;
     let mut text = headline(view) + "\n";
     if collection.superseded > 0 {
         let records = count(collection.superseded, "record");
-        text += &format!("{records} found once more, or in an earlier state: the latest counts\n");
+        text += &format!("{records} found as duplicates or in an earlier state: the latest counts\n");
     }
     if collection.others > 0 {
-        text += &format!("{} of something else, left alone\n", count(collection.others, "run"));
+        text += &format!("{} of other origin, ignored\n", count(collection.others, "run"));
     }
     for finding in &collection.findings {
         text += &format!("! {}\n", printable(&finding_in_words(finding)));
@@ -89,7 +87,7 @@ fn headline(view: &ClassView<'_>) -> String {
     format!("{} · {}", view.title(), state_in_words(view))
 }
 
-/// How many students there are, and what came back, in few words.
+/// Summarizes the number of students and submissions.
 pub fn state_in_words(view: &ClassView<'_>) -> String {
     let students = view.class.students.len() as u32;
     let of = |verdict: RunVerdict| view.collection.runs.iter().filter(|run| run.verdict == verdict).count();
@@ -108,11 +106,11 @@ pub fn state_in_words(view: &ClassView<'_>) -> String {
         .map(|verdict| format!("{} {}", of(verdict), verdict.id()))
         .collect();
     let runs =
-        if runs.is_empty() { "no run came back".to_owned() } else { format!("runs: {}", runs.join(", ")) };
+        if runs.is_empty() { "no submissions".to_owned() } else { format!("runs: {}", runs.join(", ")) };
     format!("{} · {runs}", count(students, "student"))
 }
 
-/// The class for a terminal: ranking, curves, a decision against a figure, guesses, pitfalls, and what is wrong.
+/// Shows the class in a terminal: ranking, curves, a scatter plot, guesses, pitfalls and findings.
 pub fn shown_in_words(view: &ClassView<'_>) -> String {
     let ranking = ranked(view);
     let mut text = format!("{}\nRanked by {}.\n\n", headline(view), view.measure());
@@ -125,13 +123,13 @@ pub fn shown_in_words(view: &ClassView<'_>) -> String {
     let met = pitfalls(view);
     if let Some((most, others)) = met.split_first() {
         let students = count(most.students as u32, "student");
-        text += &format!("\nThe pitfall met most: {}, by {students}. {}\n", most.name, most.say);
+        text += &format!("\nMost common pitfall: {}, by {students}. {}\n", most.name, most.say);
         for own in others {
             text += &format!("  {}: {}\n", own.name, own.students);
         }
     }
     match view.shown.hides_names {
-        // What is wrong names students.
+        // Findings name students.
         true => text,
         false => {
             let wrong: String =
@@ -144,7 +142,7 @@ pub fn shown_in_words(view: &ClassView<'_>) -> String {
 
 fn ranking_in_words(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
     let width = ranking.iter().map(|student| student.name.chars().count()).max().unwrap_or(0).max(7);
-    let heading = if view.lesson.is_some() { "of good" } else { "cash" };
+    let heading = if view.lesson.is_some() { "of reference" } else { "cash" };
     let mut text = format!("rank  {:<width$}  {heading:>12}  tries  hints  goals  pitfalls\n", "student");
     for (at, student) in ranking.iter().enumerate() {
         let score = score_in_words(view, student);
@@ -163,7 +161,7 @@ fn ranking_in_words(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> Stri
     text
 }
 
-/// What a student is ranked by: a share of the good play, or dollars.
+/// Formats a student's score: a percentage of the reference play, or dollars.
 pub fn score_in_words(view: &ClassView<'_>, student: &RankedStudent<'_>) -> String {
     match view.lesson {
         Some(_) => percent(student.score, 0),
@@ -172,23 +170,23 @@ pub fn score_in_words(view: &ClassView<'_>, student: &RankedStudent<'_>) -> Stri
 }
 
 impl RankedStudent<'_> {
-    /// The highest try of the runs that count.
+    /// Returns the highest try number of the counted runs.
     pub fn tries(&self) -> u32 {
         self.runs.iter().map(|run| run.evidence.tries).max().unwrap_or(0)
     }
 
-    /// Hints in the runs that count.
+    /// Returns the number of hints used in the counted runs.
     pub fn hints(&self) -> u32 {
         self.runs.iter().map(|run| run.evidence.hints).sum()
     }
 
-    /// Goals that were reached, and goals that were judged: `2/3`.
+    /// Returns the goals reached and judged: `2/3`.
     pub fn goals(&self) -> String {
         let goals = || self.runs.iter().flat_map(|run| &run.evidence.steps).flat_map(|step| &step.goals);
         format!("{}/{}", goals().filter(|goal| goal.met).count(), goals().count())
     }
 
-    /// Names of the pitfalls that were met.
+    /// Returns the names of the triggered pitfalls.
     pub fn pitfalls(&self) -> String {
         let all: Vec<&str> =
             self.runs.iter().flat_map(|run| &run.evidence.pitfalls).map(String::as_str).collect();
@@ -196,12 +194,11 @@ impl RankedStudent<'_> {
     }
 }
 
-/// The curves of a part, and a decision against a figure.
 fn drawings(view: &ClassView<'_>, ranking: &[RankedStudent<'_>], part: u32, lit: Option<&str>) -> String {
     let all = curves(view, ranking, part);
     let title = view.part_title(part).map(|title| format!(", {title}")).unwrap_or_default();
-    let name = ranking.iter().find(|own| Some(own.label) == lit).map_or("nobody", |own| own.name.as_str());
-    let mut text = format!("\nCash by day{title}: {name} #, good play o, others ·\n");
+    let name = ranking.iter().find(|own| Some(own.label) == lit).map_or("no one", |own| own.name.as_str());
+    let mut text = format!("\nCash by day{title}: {name} #, reference play o, others ·\n");
     let sign = |label: Option<&str>| match label {
         None => 'o',
         label if label == lit => '#',
@@ -238,7 +235,7 @@ fn guesses_in_words(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> Stri
                 format!("; nearest {}: {} for {}", named(label), compact(*guess), compact(*outcome))
             });
             text += &format!(
-                "  {} from {} to {}, in the middle {}{}\n",
+                "  {} from {} to {}, median {}{}\n",
                 guesses.len(),
                 compact(guesses[0]),
                 compact(guesses[guesses.len() - 1]),
@@ -249,7 +246,7 @@ fn guesses_in_words(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> Stri
             for (number, choice) in (1..).zip(asked.choices) {
                 let taken = asked.answers.iter().filter(|answer| answer.1 == f64::from(number)).count();
                 let is_right = asked.answers.iter().any(|answer| answer.2 == f64::from(number));
-                text += &format!("  {:>3}  {choice}{}\n", taken, if is_right { "  (right)" } else { "" });
+                text += &format!("  {:>3}  {choice}{}\n", taken, if is_right { "  (correct)" } else { "" });
             }
         }
     }

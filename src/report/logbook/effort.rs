@@ -1,4 +1,4 @@
-//! What was done between two weeks, counted.
+//! Counts of a player's actions between two weeks.
 
 use std::collections::BTreeMap;
 
@@ -7,53 +7,52 @@ use serde::{Serialize, Serializer};
 use novamind_record::trajectory::record::{Activity, DialogOutcome, DraftOutcome};
 use novamind_session::TimeSpent;
 
-/// What was done between two weeks.
+/// Counts and times of a player's actions between two weeks.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Effort {
-    /// Where the time went.
+    /// Time by class: active, idle, away.
     #[serde(flatten)]
     pub time: TimeSpent,
-    /// Times of more than ten minutes in which nobody played.
+    /// Number of breaks: more than ten minutes without play.
     pub breaks: u32,
-    /// Calls that were accepted.
+    /// Accepted calls.
     pub calls: u32,
-    /// Calls that were refused.
+    /// Rejected calls.
     pub refused: u32,
-    /// Calls that took back another.
+    /// Calls that undid another.
     pub undone: u32,
     /// Accepted calls by tool.
     pub tools: BTreeMap<String, u32>,
     /// SQL queries.
     pub queries: u32,
-    /// Queries that were refused or failed.
+    /// Queries that were rejected or failed.
     pub queries_failed: u32,
     /// Views of screens.
     pub views: u32,
-    /// Active seconds on each screen.
+    /// Time on each screen.
     #[serde(serialize_with = "active_seconds")]
     pub screens: BTreeMap<String, TimeSpent>,
-    /// Objects that were opened.
+    /// Objects opened.
     pub selects: u32,
-    /// Dialogs whose question was confirmed.
+    /// Dialogs confirmed.
     pub dialogs_confirmed: u32,
-    /// Dialogs that were left.
+    /// Dialogs cancelled.
     pub dialogs_cancelled: u32,
-    /// Terms that were explained.
+    /// Explanations of terms opened.
     pub helps: u32,
-    /// Texts that were edited and left behind.
+    /// Texts edited and not submitted.
     pub drafts_left: u32,
-    /// Characters that were typed into texts.
+    /// Characters typed into texts.
     pub typed: u64,
-    /// Characters that were deleted from them.
+    /// Characters deleted from texts.
     pub deleted: u64,
-    /// Characters that came from the clipboard.
+    /// Characters pasted into texts.
     pub pasted: u64,
     /// Changes of the notes.
     pub memos: u32,
 }
 
 impl Effort {
-    /// Counts something that a person did besides acting.
     pub(super) fn count(&mut self, activity: &Activity) {
         match activity {
             Activity::View(_) => self.views += 1,
@@ -80,7 +79,6 @@ impl Effort {
         }
     }
 
-    /// Adds what was done before another week.
     pub(super) fn add(&mut self, other: &Effort) {
         self.time += other.time;
         self.breaks += other.breaks;

@@ -1,7 +1,7 @@
-//! How a run was played, for researchers: the time it took, what was looked at, asked and called, week by week.
+//! Log of a run for researchers: times, screens, queries and calls by week.
 //!
-//! Everything is derived from the lines of the trajectory and from the run simulated again. Of hidden state only
-//! [`Measures::truly_best`] is made, of runs that are over.
+//! Everything is derived from the lines of the trajectory and from the replayed run. Only [`Measures::truly_best`]
+//! uses hidden state, and only for finished runs.
 
 mod effort;
 mod summary;
@@ -25,14 +25,14 @@ use novamind_record::trajectory::{Line, Record, end_of, policy_of};
 use novamind_session::{Attendance, ModelStamp, ScoredForecast, Session, SittingCount, TimeSpent};
 use timeline::{Span, Timeline};
 
-/// How a run was played.
+/// Log of how a run was played.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Logbook {
-    /// Run.
+    /// Run ID.
     pub run: String,
-    /// Who played, as the experimenter named them.
+    /// Label of the participant, as the experimenter assigned it.
     pub participant: Option<String>,
-    /// Which text was agreed to before the first day, and when; none if none was asked for.
+    /// Digest of the consent text and time of consent; `None` if the study asked for none.
     pub consent: Option<Consent>,
     /// Mode.
     pub mode: Mode,
@@ -44,129 +44,130 @@ pub struct Logbook {
     pub days: u32,
     /// Cash on day 0, dollars.
     pub start_cash: f64,
-    /// Format of its trajectory.
+    /// Format version of its trajectory.
     pub format: u32,
-    /// The study it belongs to.
+    /// Study of the run.
     pub study: Option<StudyStamp>,
-    /// Version that recorded it.
+    /// Program version that recorded it.
     pub version: String,
     /// Digest of the effective parameters.
     pub parameters_digest: String,
-    /// The parameters are, or were for some days, others than those of the shipped scenario of that name.
+    /// The parameters differ, or differed for some days, from those of the bundled scenario of that name.
     pub has_own_parameters: bool,
-    /// The language model that lends its voice.
+    /// The language model used as voice.
     pub voice: Option<ModelStamp>,
-    /// Earlier runs of the seed and scenario on the machine.
+    /// Number of earlier runs with this seed and scenario on the machine.
     pub earlier_runs: u32,
-    /// Run it branched from.
+    /// Parent run.
     pub parent: Option<String>,
-    /// The policy that decided its weeks, if nobody else decided one.
+    /// The policy that decided all weeks; `None` if anyone else decided one.
     pub policy: Option<String>,
-    /// When it was created, RFC 3339.
+    /// Time of creation, RFC 3339.
     pub created: String,
-    /// When its last line was written, RFC 3339.
+    /// Time of its last line, RFC 3339.
     pub last_at: String,
-    /// When it ended, RFC 3339.
+    /// Time of its end, RFC 3339.
     pub ended_at: Option<String>,
-    /// How it ended.
+    /// Reason for its end.
     pub ended: Option<Ended>,
     /// Last simulated day.
     pub day: u32,
-    /// Cash after it, dollars.
+    /// Cash after the last simulated day, dollars.
     pub cash: f64,
-    /// Score.
+    /// Final score, dollars.
     pub score: Option<f64>,
-    /// The weeks that ran.
+    /// Simulated weeks.
     pub weeks: Vec<WeekLog>,
-    /// What was done after the last of them.
+    /// Actions after the last week.
     pub open_week: Effort,
-    /// Breaks: times of more than ten minutes in which nobody played.
+    /// Breaks: more than ten minutes without play.
     pub breaks: Vec<Pause>,
-    /// How often the clock of the machine was set back while the run was played.
+    /// Number of times that the system clock was set back during the run.
     pub clock_set_back: u32,
-    /// How often the program took it up, as its lines tell.
+    /// Number of times that the run was opened, from its lines.
     pub sittings: SittingCount,
-    /// Its notes.
+    /// Notes of the run.
     pub notes: NotesLog,
-    /// Weeks that were decided in less than ten active seconds.
+    /// Number of weeks decided in less than ten active seconds.
     pub fast_weeks: u32,
     /// Sums over the whole run.
     pub total: Effort,
-    /// Seconds that a week took to decide, breaks left out: the median; none before the first week.
+    /// Median of the seconds for deciding a week, without breaks; `None` before the first week.
     pub median_week_seconds: Option<f64>,
-    /// Where the time went from the end to the last line of what was done after it; none before the end.
+    /// Time from the end of the run to the last line recorded after it; `None` before the end.
     pub after_end: Option<TimeSpent>,
-    /// Words of all rationales.
+    /// Word counts of all rationales.
     pub wording: Wording,
-    /// Behaviour measures.
+    /// Behavior measures.
     pub measures: Measures,
-    /// Ads by group and channel.
+    /// Advertising by group and channel.
     pub ads: Vec<ChannelRow>,
-    /// State after the last week.
+    /// State hash after the last week.
     pub state_hash: Option<String>,
     /// Number of the last line.
     pub last_seq: u64,
-    /// Hash of the last line: names the whole trajectory.
+    /// Hash of the last line, which identifies the whole trajectory.
     pub last_hash: String,
 }
 
 /// The notes of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct NotesLog {
-    /// How often they were kept.
+    /// Number of times that notes were saved.
     pub versions: u32,
-    /// Words of the text that was kept last; none where lines do not hold it.
+    /// Words of the last saved text; `None` if the record does not contain it.
     pub wording: Option<Wording>,
 }
 
-/// A week, or single days, and what was done before it.
+/// A week, or single days, with the actions before it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WeekLog {
     /// Number of the week, from 1.
     pub week: u32,
-    /// Day on which it was decided.
+    /// Decision day.
     pub decision_day: u32,
-    /// Last day that ran.
+    /// Last simulated day.
     pub day: u32,
-    /// Days that ran.
+    /// Number of simulated days.
     pub days_run: u32,
-    /// It was taken over from the run that this one branched from: nobody played it here.
+    /// The week was inherited from the parent run, not played in this one.
     pub inherited: bool,
-    /// It was decided here, in less than ten active seconds.
+    /// The week was decided here in less than ten active seconds.
     pub implausibly_fast: bool,
-    /// When deciding began, RFC 3339.
+    /// Start of deciding, RFC 3339.
     pub began_at: String,
-    /// When it was decided, RFC 3339.
+    /// End of deciding, RFC 3339.
     pub decided_at: String,
-    /// What was done.
+    /// Actions before the week.
     #[serde(flatten)]
     pub effort: Effort,
-    /// Words of the rationale.
+    /// Number of words in the rationale.
     pub wording: Wording,
-    /// What was decided, in words.
+    /// Descriptions of the decisions.
     pub decisions: Vec<String>,
     /// Forecasts.
     pub forecasts: Vec<ScoredForecast>,
-    /// Which of them the naive projection filled in.
+    /// Which forecasts are naive.
     pub naive_forecasts: Vec<bool>,
-    /// At least one was filled by the naive projection; none if none was filed.
+    /// Whether any forecast is naive; `None` if none was filed.
     pub filled_naively: Option<bool>,
-    /// A time limit filed it.
+    /// The week was filed by a time limit.
     pub filed_at_limit: bool,
-    /// Figures of the week as its line has them.
+    /// Figures of the week, as in its line.
     pub figures: Map<String, Value>,
-    /// Hash of the state after it.
+    /// State hash after the week.
     pub state_hash: String,
 }
 
 impl Logbook {
-    /// Who played: the participant as the experimenter named them, else the policy; none of an unnamed person.
+    /// Returns the label of the participant, or the policy; `None` for an unnamed player.
     pub fn player(&self) -> Option<String> {
         let policy = || self.policy.as_ref().map(|name| format!("policy {name}"));
         self.participant.clone().or_else(policy)
     }
 
-    /// The logbook of a run from its lines, those of what was done after its end, and the run as they make it. Asks the database what ads brought.
+    /// Builds the logbook from the lines of a run, the lines recorded after its end, and the replayed session.
+    /// Queries the database for advertising results.
     pub fn of(session: &Session, lines: &[Line], afterwards: &[Line]) -> Logbook {
         let timeline = Timeline::of(lines);
         let weeks: Vec<WeekLog> =
@@ -266,7 +267,7 @@ fn week_of_span(session: &Session, span: &Span, at: usize) -> WeekLog {
     }
 }
 
-/// Where the time went after the last line of a run, up to the last line of what was done then.
+/// Returns the time after the last line of a run, up to the last line recorded after its end.
 fn time_after(lines: &[Line], afterwards: &[Line]) -> TimeSpent {
     let mut attendance = Attendance::of(lines);
     let end = attendance.place();
@@ -274,7 +275,6 @@ fn time_after(lines: &[Line], afterwards: &[Line]) -> TimeSpent {
     attendance.between(end, attendance.place())
 }
 
-/// The middle of values; none if there are none.
 fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;

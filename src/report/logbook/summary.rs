@@ -1,4 +1,4 @@
-//! The summary of a session on a page: for whoever led it.
+//! Summary of a session as a page, for its experimenter.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use crate::words::{count, money, whole};
 use novamind_record::trajectory::record::Ended;
 use novamind_session::{BREAK_SECONDS, ModelStamp, TimeSpent};
 
-/// The page that tells how a run was played.
+/// Returns the page about a session.
 pub fn page_of(book: &Logbook) -> Page {
     let mut blocks = vec![Block::Facts(facts(book))];
     if book.clock_set_back > 0 {
@@ -20,8 +20,8 @@ pub fn page_of(book: &Logbook) -> Page {
     blocks.push(Block::Heading("Weeks"));
     blocks.push(weeks(book));
     blocks.push(Block::Note(format!(
-        "Time is the active time before each week was run. A break is a time of more than {:.0} minutes in which \
-         nobody played.",
+        "Time is the active time before each week was run. A break is more than {:.0} minutes \
+         without play.",
         BREAK_SECONDS / 60.0
     )));
     blocks.push(Block::Heading("Breaks"));
@@ -59,7 +59,7 @@ fn headline(book: &Logbook) -> String {
     let how = match book.ended {
         Some(Ended::Horizon) => "to the last day",
         Some(Ended::Bankruptcy) => "into bankruptcy",
-        Some(Ended::Abandoned) => "and gave up",
+        Some(Ended::Abandoned) => "and abandoned the run",
         Some(Ended::Lesson) => "to the end of the lesson",
         None => "and has not finished",
     };
@@ -73,12 +73,12 @@ fn facts(book: &Logbook) -> Vec<Fact> {
         Some(consent) => {
             (minute(&consent.at), format!("text {}", consent.digest.get(..16).unwrap_or_default()))
         }
-        None => ("none was asked for".to_owned(), String::new()),
+        None => ("not required".to_owned(), String::new()),
     };
     let ended = book.ended.map_or(String::new(), |ended| ended.id().to_owned());
     vec![
         Fact::new("Participant", book.participant.as_deref().unwrap_or("no label"), ""),
-        Fact::new("Agreed", consent, text),
+        Fact::new("Consent", consent, text),
         Fact::new("Started", minute(&book.created), ""),
         Fact::new("Ended", book.ended_at.as_deref().map_or("not yet".to_owned(), minute), ended),
         Fact::new("Last line", minute(&book.last_at), ""),
@@ -92,19 +92,15 @@ fn facts(book: &Logbook) -> Vec<Fact> {
                 count(book.breaks.len() as u32, "break")
             ),
         ),
-        Fact::new("Time for a week", book.median_week_seconds.map_or("none".to_owned(), time), "median"),
-        Fact::new("Calls", whole(f64::from(total.calls)), failed(total.refused, "refused")),
+        Fact::new("Time per week", book.median_week_seconds.map_or("none".to_owned(), time), "median"),
+        Fact::new("Calls", whole(f64::from(total.calls)), failed(total.refused, "rejected")),
         Fact::new("Queries", whole(f64::from(total.queries)), failed(total.queries_failed, "failed")),
         Fact::new(
-            "Words of rationale",
+            "Words in rationales",
             whole(book.wording.words as f64),
             failed(book.wording.ifs as u32, "if"),
         ),
-        Fact::new(
-            "Earlier runs of the seed",
-            book.earlier_runs.to_string(),
-            "kept in the same folder of runs",
-        ),
+        Fact::new("Earlier runs with this seed", book.earlier_runs.to_string(), "in the same runs folder"),
     ]
 }
 
@@ -119,7 +115,7 @@ fn weeks(book: &Logbook) -> Block {
             ("time", true),
             ("breaks", true),
             ("calls", true),
-            ("refused", true),
+            ("rejected", true),
             ("queries", true),
             ("screens", false),
             ("words", true),
@@ -149,20 +145,20 @@ fn week_row(week: &WeekLog) -> Vec<String> {
 
 fn breaks(book: &Logbook) -> Block {
     if book.breaks.is_empty() {
-        return Block::Text("There were none.".to_owned());
+        return Block::Text("None.".to_owned());
     }
     let row = |pause: &super::Pause| {
         vec![minute(&pause.from), minute(&pause.to), time(pause.seconds), pause.day.to_string()]
     };
     Block::Table(Table {
-        columns: vec![("from", false), ("to", false), ("length", true), ("day of the run", true)],
+        columns: vec![("from", false), ("to", false), ("duration", true), ("day of the run", true)],
         rows: book.breaks.iter().map(row).collect(),
     })
 }
 
 fn screens(total: &Effort) -> Block {
     if total.screens.is_empty() {
-        return Block::Text("None were recorded: only the console has screens.".to_owned());
+        return Block::Text("None recorded. Only the console has screens.".to_owned());
     }
     let sorted = by_length(&total.screens);
     let all: f64 = sorted.iter().map(|(_, seconds)| seconds).sum();
@@ -178,7 +174,7 @@ fn screens(total: &Effort) -> Block {
 
 fn tools(tools: &BTreeMap<String, u32>) -> Block {
     if tools.is_empty() {
-        return Block::Text("No tool was called.".to_owned());
+        return Block::Text("No tool calls.".to_owned());
     }
     let mut sorted: Vec<(&String, &u32)> = tools.iter().collect();
     sorted.sort_by(|left, right| right.1.cmp(left.1).then(left.0.cmp(right.0)));
@@ -198,17 +194,15 @@ fn decisions(book: &Logbook) -> Vec<Block> {
             points: week.decisions.clone(),
         })
         .collect();
-    if blocks.is_empty() { vec![Block::Text("Nothing was decided.".to_owned())] } else { blocks }
+    if blocks.is_empty() { vec![Block::Text("No decisions.".to_owned())] } else { blocks }
 }
 
-/// The screens that were looked at longest.
 fn longest(screens: &BTreeMap<String, TimeSpent>, most: usize) -> String {
     let sorted = by_length(screens);
     let told = sorted.iter().take(most).map(|(name, seconds)| format!("{name} {}", time(*seconds)));
     told.collect::<Vec<_>>().join(", ")
 }
 
-/// Screens with their active seconds, the longest first.
 fn by_length(screens: &BTreeMap<String, TimeSpent>) -> Vec<(&str, f64)> {
     let mut sorted: Vec<(&str, f64)> =
         screens.iter().map(|(name, spent)| (name.as_str(), spent.active_seconds())).collect();
@@ -216,7 +210,7 @@ fn by_length(screens: &BTreeMap<String, TimeSpent>) -> Vec<(&str, f64)> {
     sorted
 }
 
-/// A length of time: `45 s`, `12:05`, `1:02:05`.
+/// Formats a duration: `45 s`, `12:05`, `1:02:05`.
 fn time(seconds: f64) -> String {
     let all = seconds.max(0.0).round() as u64;
     let (hours, minutes, seconds) = (all / 3600, all / 60 % 60, all % 60);
@@ -227,7 +221,6 @@ fn time(seconds: f64) -> String {
     }
 }
 
-/// A moment to the minute, as the lines have it (UTC).
 fn minute(at: &str) -> String {
     at.get(..16).unwrap_or(at).replace('T', " ")
 }
@@ -241,14 +234,9 @@ mod tests {
         let (session, lines) = crate::test_kit::recorded();
         let book = Logbook::of(&session, &lines, &[]);
         let text = crate::markdown::write(&page_of(&book));
-        for part in [
-            "P 07 played 2 weeks",
-            "none was asked for",
-            "cash 0 s",
-            "set\\_prices",
-            "There were none.",
-            "price A: 0 → 12",
-        ] {
+        for part in
+            ["P 07 played 2 weeks", "not required", "cash 0 s", "set\\_prices", "None.", "price A: 0 → 12"]
+        {
             assert!(
                 text.contains(part) || text.contains(&part.replace('\\', "")),
                 "{part} is missing in\n{text}"

@@ -1,4 +1,4 @@
-//! The lines of a trajectory as spans of time: one for each week and what was done before it.
+//! Splits the lines of a trajectory into spans of time: one for each week and the actions before it.
 
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -11,20 +11,19 @@ use novamind_record::trajectory::record::{
 use novamind_record::trajectory::{Line, Record};
 use novamind_session::{Attendance, AttendedWeek, Attention, BREAK_SECONDS};
 
-/// A time of more than ten minutes in which nobody played.
+/// A break: more than ten minutes without play.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Pause {
     /// Day of the run.
     pub day: u32,
-    /// When it began, RFC 3339.
+    /// Start, RFC 3339.
     pub from: String,
-    /// When it ended, RFC 3339.
+    /// End, RFC 3339.
     pub to: String,
-    /// How long it was.
+    /// Duration in seconds.
     pub seconds: f64,
 }
 
-/// What was done before a week, and the week.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Span {
     pub decision_day: u32,
@@ -35,29 +34,27 @@ pub(super) struct Span {
     pub effort: Effort,
     pub rationale: Option<String>,
     pub forecasts: Vec<FiledForecast>,
-    /// At least one of them was filled by the naive projection; none if none was filed.
+    /// Whether any forecast is naive; `None` if none was filed.
     pub filled_naively: Option<bool>,
-    /// A time limit filed it: nobody wrote its rationale.
+    /// The week was filed by a time limit, without a rationale from the player.
     pub filed_at_limit: bool,
     pub figures: Map<String, Value>,
     pub state_hash: String,
-    /// Where it stands on the axis of the run.
+    /// Position on the time axis of the run.
     pub attended: AttendedWeek,
 }
 
-/// All spans of a run.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Timeline {
-    /// One for each line that closes days.
+    /// One span for each line that closes days.
     pub spans: Vec<Span>,
-    /// What came after the last of them.
     pub open: Span,
     pub breaks: Vec<Pause>,
     pub clock_set_back: u32,
 }
 
 impl Timeline {
-    /// Reads lines in their order.
+    /// Reads lines in order.
     pub fn of(lines: &[Line]) -> Timeline {
         let mut timeline = Timeline::default();
         let mut before: Option<&Line> = None;
@@ -78,7 +75,7 @@ impl Timeline {
             before = Some(line);
         }
         timeline.clock_set_back = attendance.clock_set_back();
-        // Idleness is told by a line that comes after it began: only now is known what the time was.
+        // A later line reports when idleness began, so times can be classified only after all lines are read.
         let last = AttendedWeek { from: attendance.week_from(), to: attendance.place(), inherited: false };
         let spans = timeline.spans.iter_mut().chain([&mut timeline.open]);
         for (span, week) in spans.zip(attendance.weeks().iter().chain([&last])) {
@@ -92,7 +89,7 @@ impl Timeline {
         timeline
     }
 
-    /// Times in which nobody played that are longer than ten minutes; each belongs to the week in which it ended.
+    /// Records times without play that are longer than ten minutes. Each belongs to the week in which it ended.
     fn tell_breaks(&mut self, attendance: &Attendance, lines: &[Line], places: &[i64]) {
         let mut apart: Vec<(i64, i64)> = Vec::new();
         for time in attendance.times() {
@@ -120,7 +117,8 @@ impl Timeline {
         }
     }
 
-    /// Gives each week the active time of a view that fell into it. A view ends where its line stands.
+    /// Distributes the active time of a view over the weeks that it overlaps. A view ends at the position of its
+    /// line.
     fn share_view(&mut self, week: usize, place: i64, view: &View, attendance: &Attendance) {
         let length = i64::try_from(view.for_ms).unwrap_or(i64::MAX).saturating_mul(1_000_000);
         let began = place.saturating_sub(length).max(0);
@@ -252,7 +250,7 @@ mod tests {
         assert_eq!((time.elapsed_seconds(), time.active_seconds(), effort.breaks), (1860.0, 360.0, 1));
         assert_eq!((time.idle_seconds(), time.away_seconds()), (0.0, 1500.0));
         assert_eq!(timeline.breaks[0].seconds, 1500.0);
-        assert_eq!(effort.screens["cash"].active_seconds(), 60.0, "26 minutes less the break of 25");
+        assert_eq!(effort.screens["cash"].active_seconds(), 60.0, "26 minutes minus a break of 25");
         assert_eq!((timeline.open.effort.queries, timeline.open.effort.queries_failed), (1, 0));
         assert_eq!(timeline.open.effort.time.active_seconds(), 60.0);
     }
@@ -270,7 +268,7 @@ mod tests {
             ("10:04:00", view(20_000)),
         ]));
         let seconds = |effort: &Effort| effort.screens["cash"].active_seconds();
-        assert_eq!(seconds(&timeline.spans[0].effort), 30.0, "what the week was simulated in is nobody's");
+        assert_eq!(seconds(&timeline.spans[0].effort), 30.0, "simulation time is not counted");
         assert_eq!(seconds(&timeline.open.effort), 120.0 + 20.0);
     }
 

@@ -1,4 +1,4 @@
-//! Whether advertising brings what it costs.
+//! Diagnoses of advertising: whether it brings enough for its cost.
 
 use serde_json::{Map, Value, json};
 
@@ -10,10 +10,10 @@ use novamind_base::notation::{cents, json_number};
 use novamind_session::identifiers::{Channel, Group};
 use novamind_tools::ToolId;
 
-/// Companies of four weeks from which on it counts that none asks.
+/// Minimum number of enterprises in four weeks for a missing request to matter.
 const ENOUGH_COMPANIES: u32 = 3;
 
-/// Groups of companies that ads bring and none of which asks for an offer.
+/// Finds enterprise groups that are advertised to but request no offer.
 pub(super) fn unwanted(situation: &Situation<'_>) -> Vec<Need> {
     let recent = &situation.groups[situation.groups.len().saturating_sub(4)..];
     let enterprises = situation.estimates.iter().filter(|own| own.group.is_enterprise());
@@ -27,20 +27,20 @@ pub(super) fn unwanted(situation: &Situation<'_>) -> Vec<Need> {
         let offers = Offers::to(situation, own)?;
         let ads = situation.ads_by_group[own.group];
         let text = format!(
-            "{}: {} came in {} and none asked for an offer, while ads for them cost {} a day",
+            "{}: {} arrived in {} and none requested an offer; ads for them cost {} a day",
             own.group,
-            count(came, "company"),
+            count(came, "enterprise"),
             count(recent.len() as u32, "week"),
             money(ads)
         );
-        // Nothing on sale now is known to fail them: what can be named is what the ads cost.
+        // The current offers are not known to be insufficient, so only the cost of advertising can be named.
         let (told, proposal, place) = match offers.missing() {
             missing @ (Missing::Quota | Missing::Quality) => {
                 let (told, proposal, place) = offers.remedy(missing, ads * AHEAD)?;
                 (format!("{text}; {told}"), Some(proposal), place)
             }
             Missing::Price | Missing::Balance => {
-                let saved = format!("without these ads {} a day stay in cash", money(ads));
+                let saved = format!("removing these ads saves {} a day", money(ads));
                 (text, Some(saved), without_ads(situation, own.group, |_| true))
             }
         };
@@ -56,7 +56,7 @@ pub(super) fn unwanted(situation: &Situation<'_>) -> Vec<Need> {
     unwanted.collect()
 }
 
-/// Pairs of channel and group whose leads cost far more than they did, while they are still paid for.
+/// Finds advertised pairs of channel and group whose cost per lead has risen strongly.
 pub(super) fn lead_costs(situation: &Situation<'_>) -> Vec<Need> {
     pair_costs(situation.groups).iter().filter_map(|pair| dear_leads(situation, pair)).collect()
 }
@@ -79,15 +79,15 @@ fn dear_leads(situation: &Situation<'_>, pair: &PairCost) -> Option<Need> {
     Some(Need {
         problem: Problem::LeadCost(channel, group),
         text,
-        proposal: Some(format!("without these ads {} a day stay in cash", money(ads))),
+        proposal: Some(format!("removing these ads saves {} a day", money(ads))),
         place: without_ads(situation, group, |own| own == channel),
-        // What the same leads would not have cost before.
+        // The additional cost of the same leads.
         at_risk: ads * AHEAD * (1.0 - 1.0 / rise),
         urgent: false,
     })
 }
 
-/// What leads and first bills cost in some weeks: `$372 a lead, $410 a first bill`.
+/// Describes costs per lead and first bill: `$372 a lead, $410 a first bill`.
 fn spell_in_words(spell: &AdSpell) -> String {
     let dollars = |value: f64| if value < 100.0 { cents(value) } else { money(value) };
     let lead = match spell.per_lead() {
@@ -101,7 +101,7 @@ fn spell_in_words(spell: &AdSpell) -> String {
     }
 }
 
-/// The form of advertising without the budgets of a group in some channels.
+/// Returns the advertising form without the budgets of a group in some channels.
 fn without_ads(situation: &Situation<'_>, group: Group, of: impl Fn(Channel) -> bool) -> Place {
     let mut spend = situation.session.settings().targeted_ads.targeted_spend.clone();
     for (_, groups) in spend.iter_mut().filter(|(channel, _)| of(**channel)) {

@@ -1,8 +1,8 @@
-//! What needs the person: a diagnosis of the company from what a player may see, ranked by the money at risk.
+//! Problems of the company that need action: a diagnosis from visible data, ranked by the money at risk.
 //!
-//! Every need says what is wrong with which object and by how much, and leads to where it is mended: a call whose
-//! arguments are proposed, a thread, a group, the books. Where a proposal follows from a formula that the tools
-//! document, the need names its amount. In a baseline run nothing is proposed: its player gets no advice.
+//! Every need names the object, the problem and the amount, and leads to the place for solving it: a call with
+//! proposed arguments, a thread, a group or the ledger. Amounts are proposed if they follow from a formula that the
+//! tools document. Baseline runs get no proposals.
 
 mod advertising;
 mod money;
@@ -21,41 +21,41 @@ use novamind_session::{
 };
 use novamind_tools::ToolId;
 
-/// What is wrong. Of two needs with the same money at risk the one that stands first here comes first.
+/// Kind of problem. Among needs with equal money at risk, the earlier variant comes first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Problem {
     /// Cash will not last.
     Runway,
-    /// Companies wait for an answer.
+    /// Enterprises wait for an answer.
     Threads,
     /// No plan has a price.
     NoPrice,
     /// Plans with a price have a quota of 0.
     NoQuota,
-    /// Nobody hears of the company.
+    /// No channel brings leads.
     NoLeads,
-    /// Leads of a group come and do not sign.
+    /// Leads of a group do not sign up.
     NoSales(Group),
     /// Individuals on a plan cost more than they pay.
     Margin,
-    /// Usage went above capacity.
+    /// Usage exceeded capacity.
     Overload,
-    /// The service was down.
+    /// The service failed.
     Outages,
     /// Subscribers wait for support.
     Backlog,
-    /// A group is leaving.
+    /// Subscribers of a group cancel.
     Churn(Group),
-    /// Companies of a group find no plan good enough at any price.
+    /// Enterprises of a group find no plan with sufficient quality.
     Unwanted(Group),
-    /// Leads of a group have become dear in a channel.
+    /// Leads of a group in a channel have become expensive.
     LeadCost(Channel, Group),
-    /// Usage will soon be above capacity.
+    /// Usage will soon exceed capacity.
     Capacity,
 }
 
 impl Problem {
-    /// Word for programs.
+    /// Returns the ID for programs.
     pub fn id(self) -> &'static str {
         match self {
             Problem::Runway => "runway",
@@ -76,41 +76,40 @@ impl Problem {
     }
 }
 
-/// Where a need is looked after.
+/// Where a need can be solved.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Place {
-    /// The form of a tool, with these arguments proposed.
+    /// The form of a tool, filled with these arguments.
     Call(ToolId, Value),
-    /// The thread of this number.
+    /// The thread with this number.
     Thread(u32),
     /// A group.
     Group(Group),
-    /// The books.
+    /// The ledger.
     Books,
 }
 
-/// Something that needs the person.
+/// A problem that needs action.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Need {
-    /// What is wrong.
+    /// Kind of problem.
     pub problem: Problem,
-    /// The same in words, with the amounts.
+    /// Description with amounts.
     pub text: String,
-    /// What would mend it; none where nothing is proposed.
+    /// Proposed solution; `None` if nothing is proposed.
     pub proposal: Option<String>,
-    /// Where it is looked after.
+    /// Where it can be solved.
     pub place: Place,
-    /// Dollars of the next four weeks that are at risk.
+    /// Money at risk over the next four weeks, dollars.
     pub at_risk: f64,
-    /// It costs something not to act before the next week.
+    /// Whether waiting until the next week costs something.
     pub urgent: bool,
 }
 
-/// What a diagnosis looks at.
 struct Situation<'a> {
     seen: Observation,
     settings: CoreSettings,
-    /// Advertising, dollars a day: in all, and for each group.
+    /// Advertising in dollars a day: total, and by group.
     ads: f64,
     ads_by_group: ByGroup<f64>,
     weeks: &'a [WeekFigures],
@@ -122,11 +121,10 @@ struct Situation<'a> {
     session: &'a Session,
 }
 
-/// Days that money at risk is counted for.
+/// Days over which money at risk is counted.
 const AHEAD: f64 = 28.0;
-/// Share of the money that moves below which nothing is a need.
+/// Share of the turnover below which nothing is reported.
 const SMALL: f64 = 0.01;
-/// Days of a month of billing.
 const MONTH: f64 = 30.0;
 
 impl<'a> Situation<'a> {
@@ -159,12 +157,12 @@ impl<'a> Situation<'a> {
         self.groups.last()
     }
 
-    /// Recurring revenue of the next four weeks.
+    /// Returns recurring revenue of the next four weeks, dollars.
     fn revenue_ahead(&self) -> f64 {
         self.week().map_or(0.0, |week| week.recurring_revenue) * AHEAD / MONTH
     }
 
-    /// What the settings cost in the next four weeks.
+    /// Returns the cost of the settings over the next four weeks, dollars.
     fn commitments_ahead(&self) -> f64 {
         self.seen.pace.committed * AHEAD
     }
@@ -182,7 +180,7 @@ impl<'a> Situation<'a> {
     }
 }
 
-/// What needs the person now, the most urgent first and of those the costliest; nothing once the run is over.
+/// Returns what needs action, urgent needs first, then by money at risk; empty after the end of the run.
 pub fn needs(session: &Session) -> Vec<Need> {
     if session.ended().is_some() {
         return Vec::new();
@@ -202,9 +200,9 @@ pub fn needs(session: &Session) -> Vec<Need> {
     found.extend(service::backlog(&situation));
     found.extend(people::churn(&situation));
     let moved = situation.revenue_ahead() + situation.commitments_ahead();
-    // Somebody who waits is named, however little they pay.
+    // Threads and subscribers waiting for an answer are always reported, however small their value.
     found.retain(|need| need.problem == Problem::Threads || need.at_risk >= SMALL * moved);
-    // Nobody is sent to a form that the lesson keeps shut.
+    // Skips forms that the lesson has locked.
     let is_locked = |tool: ToolId| session.lesson().is_some_and(|own| !own.has_tool(tool));
     found.retain(|need| !matches!(need.place, Place::Call(tool, _) if is_locked(tool)));
     if !session.rules().advice {
@@ -218,7 +216,6 @@ pub fn needs(session: &Session) -> Vec<Need> {
 }
 
 impl Need {
-    /// Takes the advice out.
     fn keep_to_facts(&mut self) {
         self.proposal = None;
         if let Place::Call(_, arguments) = &mut self.place {
@@ -226,7 +223,7 @@ impl Need {
         }
     }
 
-    /// What is wrong and what would mend it.
+    /// Describes the problem and its proposed solution.
     pub fn in_words(&self) -> String {
         match &self.proposal {
             Some(proposal) => format!("{}; {proposal}", self.text),
@@ -235,7 +232,7 @@ impl Need {
     }
 }
 
-/// An amount rounded up to two digits, for proposals that name a round figure.
+/// Rounds an amount up to two digits, for proposals of round figures.
 fn rounded_up(value: f64) -> f64 {
     if value <= 0.0 {
         return 0.0;

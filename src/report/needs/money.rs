@@ -1,4 +1,4 @@
-//! Whether cash lasts and plans earn what they cost.
+//! Diagnoses of cash and margins.
 
 use serde_json::{Map, Value, json};
 
@@ -9,10 +9,10 @@ use novamind_session::ModelTier;
 use novamind_session::identifiers::{Group, Plan};
 use novamind_tools::ToolId;
 
-/// Weeks of cash below which it is urgent.
+/// Weeks of cash below which the need is urgent.
 const SHORT: f64 = 8.0;
 
-/// Cash that does not last eight weeks at this pace.
+/// Finds cash that lasts less than eight weeks at the current rate.
 pub(super) fn runway(situation: &Situation<'_>) -> Option<Need> {
     let seen = &situation.seen;
     let weeks = seen.runway_weeks.filter(|weeks| *weeks < SHORT)?;
@@ -26,7 +26,7 @@ pub(super) fn runway(situation: &Situation<'_>) -> Option<Need> {
             _ => "no longer shrinks".to_owned(),
         };
         format!(
-            "the largest budget is {name}, {} a day: at {} a day cash {lasts}",
+            "the largest budget is {name}, {} a day: at {} a day, cash {lasts}",
             money(dollars),
             money(kept)
         )
@@ -34,7 +34,7 @@ pub(super) fn runway(situation: &Situation<'_>) -> Option<Need> {
     Some(Need {
         problem: Problem::Runway,
         text: format!(
-            "cash lasts {} at this pace: income {} a week, costs {}",
+            "cash lasts {} at the current rate: income {} a week, costs {}",
             count(weeks as u32, "week"),
             money(pace.income * 7.0),
             money(out)
@@ -46,18 +46,16 @@ pub(super) fn runway(situation: &Situation<'_>) -> Option<Need> {
     })
 }
 
-/// A budget that the settings hold.
 struct Budget {
     name: &'static str,
     /// Dollars a day.
     dollars: f64,
-    /// What may be kept of it so that cash lasts eight weeks, dollars a day.
+    /// Amount that lets cash last eight weeks, dollars a day.
     kept: f64,
-    /// Its form with that.
+    /// Its form with that amount.
     place: Place,
 }
 
-/// The largest of the budgets.
 fn largest_budget(situation: &Situation<'_>) -> Budget {
     let settings = situation.session.settings();
     let (core, development) = (&settings.core, &settings.targeted_development);
@@ -83,7 +81,7 @@ fn largest_budget(situation: &Situation<'_>) -> Budget {
         .collect();
     let budgets = [
         (
-            "development for single groups",
+            "targeted development",
             development.total(),
             Place::Call(ToolId::SetTargetedDevSpend, json!({ "targeted_spend": targeted })),
         ),
@@ -105,12 +103,11 @@ fn largest_budget(situation: &Situation<'_>) -> Budget {
     ];
     let largest = budgets.into_iter().max_by(|left, right| left.1.total_cmp(&right.1));
     let (name, dollars, place) = largest.filter(|budget| budget.1 > 0.0).unwrap_or(("", 0.0, Place::Books));
-    // What the form holds is told, rounded down cell by cell as it is.
+    // Reports the sum in the form, where each cell is rounded down.
     let kept = if let Place::Call(_, arguments) = &place { sum(arguments) } else { 0.0 };
     Budget { name, dollars, kept, place }
 }
 
-/// Sum of the numbers in arguments.
 fn sum(arguments: &Value) -> f64 {
     match arguments {
         Value::Object(fields) => fields.values().map(sum).sum(),
@@ -118,7 +115,7 @@ fn sum(arguments: &Value) -> f64 {
     }
 }
 
-/// Plans whose individual subscribers cost more in compute than they pay.
+/// Finds plans whose individual subscribers cost more in compute than they pay.
 pub(super) fn margin(situation: &Situation<'_>) -> Vec<Need> {
     let Some(groups) = situation.group_week() else { return Vec::new() };
     let models = &situation.terms.models;
@@ -137,7 +134,7 @@ pub(super) fn margin(situation: &Situation<'_>) -> Vec<Need> {
         Some(Need {
             problem: Problem::Margin,
             text: format!(
-                "plan {plan} loses money: {} pay {} a month, and compute costs {} a month at the last day's use",
+                "plan {plan} loses money: {} pay {} a month, and compute costs {} a month at the last day's usage",
                 count(subscribers, "individual"),
                 money(revenue),
                 money(cost)
@@ -151,7 +148,7 @@ pub(super) fn margin(situation: &Situation<'_>) -> Vec<Need> {
     Plan::ALL.into_iter().filter_map(of_plan).collect()
 }
 
-/// The best model whose cost the plan's revenue covers at the same use, or a quota that does.
+/// Proposes the best model tier that the plan's revenue covers at the same usage, or else a smaller quota.
 fn cheaper(
     situation: &Situation<'_>,
     plan: Plan,
@@ -162,7 +159,8 @@ fn cheaper(
     let lower = situation.terms.models.iter().rev().filter(|model| model.tier < now.tier);
     let covered = lower.filter(|model| units * model.unit_cost < revenue).map(|model| {
         let cost = money(units * model.unit_cost);
-        let text = format!("model tier {} costs {cost} at the same use and delivers less", model.tier);
+        let text =
+            format!("model tier {} costs {cost} at the same usage and delivers lower quality", model.tier);
         (text, Place::Call(ToolId::SetModelTiers, json!({ plan.id(): model.tier })))
     });
     covered.into_iter().next().unwrap_or_else(|| {
@@ -175,7 +173,7 @@ fn cheaper(
                 (of.id().to_owned(), json_number(if of == plan { quota } else { kept }))
             })
             .collect();
-        let text = format!("a quota below today's {} units a day limits what they can use", whole(held));
+        let text = format!("a quota below today's {} units a day limits their usage", whole(held));
         (text, Place::Call(ToolId::SetUsageQuotas, Value::Object(quotas)))
     })
 }

@@ -1,4 +1,4 @@
-//! Whether companies are answered and subscribers stay.
+//! Diagnoses of negotiations and churn.
 
 use serde_json::{Map, Value};
 
@@ -10,11 +10,10 @@ use novamind_session::identifiers::{Group, Plan};
 use novamind_session::{Change, Decisions};
 use novamind_tools::ToolId;
 
-/// Cancellations of a week below which nobody speaks of a wave.
+/// Minimum number of weekly cancellations for a wave.
 const FEW: f64 = 20.0;
-/// Weeks of a cycle of bills.
 const CYCLE: usize = 4;
-/// How many times its usual size the share that leaves must be.
+/// Minimum ratio of a wave to the usual churn.
 const WAVE: f64 = 2.0;
 /// Days in which every subscriber is billed once, and so decides.
 const BILLING: u32 = 30;
@@ -27,7 +26,7 @@ const JUDGED: [ToolId; 5] = [
     ToolId::SetAdsStrength,
 ];
 
-/// Threads that end within the coming week unless they are answered now.
+/// Finds threads that end within the coming week unless they are answered.
 pub(super) fn threads(situation: &Situation<'_>) -> Option<Need> {
     let waiting = &situation.seen.waiting;
     let deadline = |days: u32| situation.seen.day + days;
@@ -52,12 +51,12 @@ pub(super) fn threads(situation: &Situation<'_>) -> Option<Need> {
             format!("{} waits", situation.session.company().company_names().with_number(first.customer)),
             "the thread ends",
         ),
-        more => (format!("{} wait", count(more as u32, "company")), "their threads end"),
+        more => (format!("{} wait", count(more as u32, "enterprise")), "their threads end"),
     };
     Some(Need {
         problem: Problem::Threads,
         text: format!(
-            "{who} for an answer ({}, {} a month at what they ask or the lowest list price); without one {fate} {by}",
+            "{who} for an answer ({}, {} a month at the requested or lowest list price); without one {fate} {by}",
             count(seats, "seat"),
             money(a_month)
         ),
@@ -68,7 +67,7 @@ pub(super) fn threads(situation: &Situation<'_>) -> Option<Need> {
     })
 }
 
-/// Groups whose subscribers cancel far more than they did.
+/// Finds groups with far more cancellations than usual.
 pub(super) fn churn(situation: &Situation<'_>) -> Vec<Need> {
     let people = Group::all().filter(|group| !group.is_enterprise());
     people.filter_map(|group| wave(situation, group)).collect()
@@ -78,8 +77,8 @@ fn wave(situation: &Situation<'_>, group: Group) -> Option<Need> {
     let weeks = situation.groups;
     let there = |at: usize| f64::from(weeks[at][group].subscribers.0.iter().sum::<u32>());
     let left = |at: usize| f64::from(weeks[at][group].left);
-    // Who cancels does so on a bill, a month after signing up at the earliest: they are measured against those who were
-    // there four weeks before.
+    // Subscribers cancel when billed, a month after signup at the earliest, so cancellations are compared with the
+    // subscribers of four weeks before.
     let share = |at: usize| left(at) / there(at - CYCLE).max(1.0);
     let last = weeks.len().checked_sub(1)?;
     let before = last.saturating_sub(CYCLE).max(CYCLE)..last;
@@ -120,7 +119,7 @@ fn wave(situation: &Situation<'_>, group: Group) -> Option<Need> {
     })
 }
 
-/// The last change of something that subscribers judge, while some of them meet it at their first bill since.
+/// Returns the last change of a setting that subscribers judge, while some of them see it on their first bill since.
 fn judged<'a>(situation: &'a Situation<'_>) -> Option<(u32, Vec<&'a Change>)> {
     let recent = |decided: &&Decisions| decided.day + BILLING + 7 > situation.seen.day;
     situation.decisions.iter().rev().take_while(recent).find_map(|decided| {
@@ -133,7 +132,7 @@ fn judged<'a>(situation: &'a Situation<'_>) -> Option<(u32, Vec<&'a Change>)> {
     })
 }
 
-/// The form of the first changed setting with what held before, where it is a setting by plan.
+/// Returns the form of the first changed setting with its earlier value, if it is a setting by plan.
 fn restored(situation: &Situation<'_>, changes: &[&Change], group: Group) -> Place {
     let Some(first) = changes.first() else { return Place::Group(group) };
     let tool = first.setting.tool();

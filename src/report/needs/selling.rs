@@ -1,4 +1,4 @@
-//! Whether the company can be bought from, is heard of, and offers what leads take.
+//! Diagnoses of sales: plans on offer, leads, and their conversion.
 
 use serde_json::{Map, Value, json};
 
@@ -10,18 +10,16 @@ use novamind_session::identifiers::{Channel, Group, Plan};
 use novamind_session::{DeliveredQuality, Estimates, GroupWeek};
 use novamind_tools::ToolId;
 
-/// Leads of a week from which on it counts how few sign.
 const ENOUGH_LEADS: u32 = 20;
-/// Share of the leads below which few sign.
 const FEW: f64 = 0.1;
-/// Share of the estimated use that a quota must cover.
+/// Share of the estimated usage that a quota must cover.
 const COVERED: f64 = 0.8;
-/// Days after which an estimate of a study is old.
+/// Age in days at which an estimate is old.
 const OLD: u32 = 28;
-/// Dollars a day of a first try of a channel.
+/// Dollars a day for a first test of a channel.
 const FIRST_TRY: f64 = 50.0;
 
-/// No plan has a price, or those that have deliver nothing.
+/// Finds that no plan has a price, or that priced plans have a quota of 0.
 pub(super) fn nothing_on_sale(situation: &Situation<'_>) -> Option<Need> {
     let core = &situation.settings;
     let priced: Vec<Plan> = Plan::ALL.into_iter().filter(|plan| core.prices[*plan] > 0.0).collect();
@@ -74,7 +72,7 @@ fn no_price(situation: &Situation<'_>) -> Need {
         .enumerate()
         .filter_map(|(at, plan)| Some((plan.id().to_owned(), json_number(half(at)?))))
         .collect();
-    // The form holds half of the figure that is shown, not half of the middle of its range.
+    // The form contains half of the displayed estimate, not of the middle of its range.
     let told: Vec<String> = budgets
         .iter()
         .map(|own| {
@@ -84,7 +82,7 @@ fn no_price(situation: &Situation<'_>) -> Need {
         .collect();
     Need {
         problem: Problem::NoPrice,
-        text: "no plan has a price: nobody can subscribe".to_owned(),
+        text: "no plan has a price: no one can subscribe".to_owned(),
         proposal: Some(format!(
             "mean budgets a month: {}; the form proposes half of each estimate",
             told.join(", ")
@@ -95,14 +93,14 @@ fn no_price(situation: &Situation<'_>) -> Need {
     }
 }
 
-/// No channel is paid and nobody is there to tell others.
+/// Finds that no channel is paid and no subscribers bring word of mouth.
 pub(super) fn no_leads(situation: &Situation<'_>) -> Option<Need> {
     let came = situation.week().map_or(0, |week| week.new_individual_leads + week.new_enterprise_leads);
     let silent = situation.seen.subscribers + situation.seen.seats == 0;
     if situation.ads > 0.0 || came > 0 || !silent {
         return None;
     }
-    // The plans as they are come first, then what a better model could deliver, then what they pay.
+    // Groups are ranked by their fit with the current plans, then with the best model tier, then by budget.
     let group = situation.individuals().min_by(|left, right| {
         let now = |own: &Estimates| (own.floor - delivered_now(situation, own.group)).max(0.0);
         let missing = |own: &Estimates| (own.floor - within_reach(situation, own.group)).max(0.0);
@@ -129,13 +127,13 @@ pub(super) fn no_leads(situation: &Situation<'_>) -> Option<Need> {
     })
 }
 
-/// The best quality that any plan delivers to a group today.
+/// Returns the highest quality that any plan delivers to a group today.
 fn delivered_now(situation: &Situation<'_>, group: Group) -> f64 {
     let delivered = |quality: &DeliveredQuality| Plan::ALL.map(|plan| quality.by_plan[plan]);
     situation.quality(group).map_or(0.0, |quality| delivered(quality).into_iter().fold(0.0, f64::max))
 }
 
-/// The quality that the best model would deliver to a group today.
+/// Returns the quality that the best model tier would deliver to a group today.
 fn within_reach(situation: &Situation<'_>, group: Group) -> f64 {
     let models = &situation.terms.models;
     let best = models.iter().map(|model| model.multiplier).fold(0.0, f64::max);
@@ -144,17 +142,16 @@ fn within_reach(situation: &Situation<'_>, group: Group) -> f64 {
     delivered.zip(now).map_or(0.0, |(delivered, now)| delivered / now.multiplier * best)
 }
 
-/// What keeps the leads of a group from a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Missing {
     Price,
     Quota,
     Quality,
-    /// Price, quota and quality are each within the estimates: at this price more quality is asked for.
+    /// Price, quota and quality each meet the estimates, but customers require more quality at this price.
     Balance,
 }
 
-/// Groups of individuals whose leads come and do not sign.
+/// Finds groups of individuals with leads that do not sign up.
 pub(super) fn no_sales(situation: &Situation<'_>) -> Vec<Need> {
     let on_sale = Plan::ALL
         .into_iter()
@@ -178,7 +175,7 @@ fn no_sale(situation: &Situation<'_>, own: &Estimates, week: &GroupWeek) -> Opti
     Some(Need {
         problem: Problem::NoSales(own.group),
         text: format!(
-            "{}: {} came last week, {signed} signed ({share}); {told}",
+            "{}: {} last week, {signed} signed ({share}); {told}",
             own.group,
             count(week.leads, "lead")
         ),
@@ -189,7 +186,6 @@ fn no_sale(situation: &Situation<'_>, own: &Estimates, week: &GroupWeek) -> Opti
     })
 }
 
-/// What is on offer to a group, beside what is known of it.
 pub(super) struct Offers<'a> {
     situation: &'a Situation<'a>,
     own: &'a Estimates,
@@ -197,12 +193,11 @@ pub(super) struct Offers<'a> {
 }
 
 impl<'a> Offers<'a> {
-    /// What is on offer to a group; none while nothing is delivered to it.
+    /// Returns the offers to a group; `None` if no plan delivers to it.
     pub(super) fn to(situation: &'a Situation<'a>, own: &'a Estimates) -> Option<Offers<'a>> {
         Some(Offers { situation, own, quality: situation.quality(own.group)? })
     }
 
-    /// Plans on sale.
     fn plans(&self) -> impl Iterator<Item = Plan> + '_ {
         Plan::ALL.into_iter().filter(|plan| self.price(*plan) > 0.0)
     }
@@ -211,7 +206,7 @@ impl<'a> Offers<'a> {
         self.situation.settings.prices[plan]
     }
 
-    /// Share of the estimated use of an account that the quota covers.
+    /// Returns the share of an account's estimated usage that the quota covers.
     fn covered(&self, plan: Plan) -> f64 {
         (self.situation.settings.quotas[plan].units() / self.own.account_usage().max(1e-9)).min(1.0)
     }
@@ -221,17 +216,18 @@ impl<'a> Offers<'a> {
     }
 
     fn affordable(&self) -> impl Iterator<Item = Plan> + '_ {
-        // Companies name a price of their own.
+        // Enterprises negotiate their price.
         let negotiates = self.own.group.is_enterprise();
         self.plans().filter(move |plan| negotiates || self.price(*plan) <= self.own.budget)
     }
 
-    /// The affordable plan that lacks least; of several the one that delivers most, its quota left aside.
+    /// Returns the affordable plan with the fewest deficits; among equals the one with the highest quality, ignoring
+    /// its quota.
     fn best(&self) -> Option<Plan> {
         let quality = |plan: &Plan| self.quality.by_plan[*plan];
         let lacks =
             |plan: &Plan| u8::from(self.covered(*plan) < COVERED) + u8::from(quality(plan) < self.own.floor);
-        // Of two that deliver the same, people take the cheaper one.
+        // At equal quality, customers choose the cheaper plan.
         let price = |plan: &Plan| self.price(*plan);
         self.affordable().max_by(|left, right| {
             lacks(right)
@@ -241,17 +237,18 @@ impl<'a> Offers<'a> {
         })
     }
 
-    /// The quality of the best plan. One that delivers more and lacks more is named, too: its quota does not cover their use.
+    /// Describes the quality of the best plan. Also names a plan with higher quality whose quota does not cover the
+    /// usage.
     fn best_in_words(&self, plan: Plan, delivered: f64) -> String {
         let quality = |plan: Plan| self.quality.by_plan[plan];
-        // Screens show the range of the budget: which plans are compared follows from the estimate in it.
+        // Screens show the range of the budget, but plans are compared by the point estimate.
         let scope = match self.own.group.is_enterprise() {
             true => String::new(),
             false => format!(" within their estimated budget of {}", money(self.own.budget.round())),
         };
         let more = self.affordable().max_by(|left, right| quality(*left).total_cmp(&quality(*right)));
         match more.filter(|more| quality(*more) > delivered) {
-            None => format!("the best{scope}, {delivered:.4} on {plan}"),
+            None => format!("the best{scope} is {delivered:.4} on {plan}"),
             Some(more) => format!(
                 "{delivered:.4} on {plan}; {more} delivers {:.4}{scope}, but its quota is too small for them",
                 quality(more)
@@ -268,13 +265,12 @@ impl<'a> Offers<'a> {
         }
     }
 
-    /// Whether a price, quota or model differs from that of the days before.
     fn changed_today(&self) -> bool {
         let of_offers = [ToolId::SetPrices, ToolId::SetUsageQuotas, ToolId::SetModelTiers];
         self.situation.seen.changes.iter().any(|change| of_offers.contains(&change.setting.tool()))
     }
 
-    /// What is missing in words, what would mend it, and where. What rests on an old study is studied again first.
+    /// Describes the deficit, a solution and its place. Proposes a new study first if the estimate is old.
     pub(super) fn remedy(&self, missing: Missing, at_risk: f64) -> Option<(String, String, Place)> {
         let (told, proposal, place) = self.remedy_of(missing, at_risk)?;
         match self.renewed(at_risk) {
@@ -285,8 +281,8 @@ impl<'a> Offers<'a> {
         }
     }
 
-    /// A study that renews estimates which are older than four weeks, if it costs no more than is at risk; none while one
-    /// is under way.
+    /// Proposes a study that updates estimates older than four weeks, if it costs no more than is at risk. `None` if
+    /// a study is already running.
     fn renewed(&self, at_risk: f64) -> Option<(String, Place)> {
         let (own, day) = (self.own, self.situation.seen.day);
         let is_studied = || {
@@ -298,7 +294,7 @@ impl<'a> Offers<'a> {
         let terms = &self.situation.terms;
         let study = terms.level(own.level.max(terms.targets.0)).filter(|study| study.cost <= at_risk)?;
         let text = format!(
-            "their floor rises as rivals improve, and the estimate is {} old: a study of level {} renews it for {} in {}",
+            "required quality rises as competitors improve, and the estimate is {} old: a level {} study updates it for {} in {}",
             count(day - own.as_of, "day"),
             study.level,
             money(study.cost),
@@ -320,11 +316,11 @@ impl<'a> Offers<'a> {
                     self.plans().min_by(|left, right| self.price(*left).total_cmp(&self.price(*right)))?;
                 Some((
                     format!(
-                        "price: the lowest, {} for {plan}, against a mean budget of {} ({as_of})",
+                        "price: the lowest is {} for {plan}, the mean budget {} ({as_of})",
                         money(self.price(plan)),
                         TruthRange::behind(own.budget, own.noise).money()
                     ),
-                    format!("{} is within even the lowest of that range", money(price)),
+                    format!("{} is below even the low end of that range", money(price)),
                     Place::Call(ToolId::SetPrices, json!({ plan.id(): json_number(price) })),
                 ))
             }
@@ -340,12 +336,12 @@ impl<'a> Offers<'a> {
                     .collect();
                 Some((
                     format!(
-                        "quota: {} units a day on {plan} against a mean use{} of {}",
+                        "quota: {} units a day on {plan}; mean usage{} is {}",
                         whole(self.situation.settings.quotas[plan].units()),
-                        if group.is_enterprise() { " of the smallest companies" } else { "" },
+                        if group.is_enterprise() { " of the smallest enterprises" } else { "" },
                         TruthRange::from(own.account_range()).units()
                     ),
-                    format!("{} units a day cover even the largest of that range", whole(quota)),
+                    format!("{} units a day cover even the high end of that range", whole(quota)),
                     Place::Call(ToolId::SetUsageQuotas, Value::Object(quotas)),
                 ))
             }
@@ -353,23 +349,23 @@ impl<'a> Offers<'a> {
                 let plan = self.best()?;
                 let delivered = self.quality.by_plan[plan];
                 let told = format!(
-                    "quality: {}, against a mean floor of {floor} ({as_of})",
+                    "quality: {}; required on average: {floor} ({as_of})",
                     self.best_in_words(plan, delivered)
                 );
                 let (proposal, place) =
                     better_quality(self.situation, group, plan, (delivered, own.floor), at_risk)?;
                 Some((told, proposal, place))
             }
-            // Nobody has seen an offer that was changed today: last week says nothing about it.
+            // Customers have not seen an offer that changed today, so last week's leads do not judge it.
             Missing::Balance if self.changed_today() => None,
             Missing::Balance => {
                 let plan = self.best()?;
                 let delivered = self.quality.by_plan[plan];
                 let problem = format!(
-                    "{plan} delivers {delivered:.4} for {}; their mean floor, {floor} ({as_of}), rises with the price",
+                    "{plan} delivers {delivered:.4} for {}; they expect more at higher prices (mean at low prices: {floor}, {as_of})",
                     money(self.price(plan))
                 );
-                let remedy = "only a lower price or a higher quality can win them";
+                let remedy = "only a lower price or higher quality can win them";
                 Some(match better_model(self.situation, group, plan, delivered, delivered) {
                     Some((model, place)) => (problem, format!("{remedy}: {model}"), place),
                     None => (problem, remedy.to_owned(), Place::Group(group)),
@@ -379,7 +375,7 @@ impl<'a> Offers<'a> {
     }
 }
 
-/// The least model above the present one that delivers as much as this and whose compute the price covers.
+/// Returns the lowest higher model tier that delivers sufficient quality and whose compute the price covers.
 fn better_model(
     situation: &Situation<'_>,
     group: Group,
@@ -390,7 +386,7 @@ fn better_model(
     let models = &situation.terms.models;
     let now = models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
     let product = delivered / now.multiplier;
-    // A model whose compute costs more than the plan brings is no advice. Companies name a price of their own.
+    // Does not propose a model tier whose compute costs more than the plan earns. Enterprises negotiate their price.
     let used =
         situation.estimate(group)?.account_usage().min(situation.settings.quotas[plan].units()) * MONTH;
     let pays = |unit_cost: f64| group.is_enterprise() || used * unit_cost <= situation.settings.prices[plan];
@@ -398,7 +394,7 @@ fn better_model(
     let enough = better.into_iter().find(|model| product * model.multiplier >= floor)?;
     Some((
         format!(
-            "model tier {} delivers {:.4} on {plan} at {} per 1,000 units instead of {}",
+            "model tier {} delivers {:.4} on {plan} at {} per 1,000 units rather than {}",
             enough.tier,
             product * enough.multiplier,
             cents(enough.unit_cost * 1_000.0),
@@ -408,7 +404,8 @@ fn better_model(
     ))
 }
 
-/// A better model if one is good enough and pays, otherwise development for the group, if it costs no more than is at risk.
+/// Proposes a better model tier if one is sufficient and profitable, otherwise development for the group if it costs
+/// no more than is at risk.
 fn better_quality(
     situation: &Situation<'_>,
     group: Group,
@@ -421,23 +418,25 @@ fn better_quality(
     }
     let now = situation.terms.models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
     const DOLLARS: f64 = 5_000.0;
-    // What is on its way needs nothing but time.
+    // A running project needs only time.
     let mut spend = situation.session.settings().targeted_development.targeted_spend.clone();
     if spend.get(&group).is_some_and(|spend| *spend >= DOLLARS) {
         return None;
     }
     let gain = situation.session.company().targeted_gain(DOLLARS) * now.multiplier;
     let days = ((floor - delivered) / gain).ceil();
-    // Settings hold for a week at least.
+    // Settings stay in force for at least a week.
     let cost = DOLLARS * days.max(7.0);
     let reached = format!(
-        "development for {group} at {} a day reaches that floor in {}, for {} in all",
+        "development for {group} at {} a day reaches that quality in {}, for {} in total",
         money(DOLLARS),
         count(days as u32, "day"),
         money(cost)
     );
     let told = match cost > at_risk {
-        true => format!("{reached}: more than the {} that four weeks lose, but it stays", money(at_risk)),
+        true => {
+            format!("{reached}: more than the {} lost in four weeks, but the effect lasts", money(at_risk))
+        }
         false => reached,
     };
     spend.insert(group, DOLLARS);

@@ -1,4 +1,4 @@
-//! Whether the service holds up: capacity, outages, support.
+//! Diagnoses of the service: capacity, outages and support.
 
 use serde_json::json;
 
@@ -10,16 +10,16 @@ use novamind_record::figures::WeekFigures;
 use novamind_session::{CapacityTier, SettingId};
 use novamind_tools::ToolId;
 
-/// Weeks ahead in which capacity must not run out.
+/// Weeks ahead in which capacity must be sufficient.
 const SOON: f64 = 2.0;
-/// Share of days with an outage from which on operations are too low.
+/// Share of days with an outage at which operations are too low.
 const OFTEN: f64 = 0.01;
-/// Share of the subscribers that may wait for support.
+/// Acceptable share of subscribers waiting for support.
 const WAITING: f64 = 0.02;
-/// Days in which a backlog is to be cleared.
+/// Days in which a backlog should be cleared.
 const DAYS_TO_CLEAR: f64 = 7.0;
 
-/// Usage above capacity, or soon above it.
+/// Finds usage above capacity, or soon above it.
 pub(super) fn capacity(situation: &Situation<'_>) -> Option<Need> {
     let week = situation.week()?;
     let tiers = &situation.terms.capacities;
@@ -28,7 +28,7 @@ pub(super) fn capacity(situation: &Situation<'_>) -> Option<Need> {
     if busiest > now.units {
         return Some(overload(situation, week, now));
     }
-    // A tier that was chosen today has not been tried yet.
+    // A tier chosen today has no usage data yet.
     if situation.seen.changes.iter().any(|change| change.setting == SettingId::CapacityTier) {
         return None;
     }
@@ -46,7 +46,7 @@ pub(super) fn capacity(situation: &Situation<'_>) -> Option<Need> {
         problem: Problem::Capacity,
         text: format!(
             "the busiest day of the week used {} units, {} of the {} of capacity tier {} and {} more than the busiest day \
-             a week before: at that growth the tier is full in {full}",
+             a week before: at that growth, the tier is full in {full}",
             whole(busiest),
             percent(busiest / now.units, 0),
             whole(now.units),
@@ -82,7 +82,7 @@ fn overload(situation: &Situation<'_>, week: &WeekFigures, now: &CapacityTier) -
 
 fn costs(tier: &CapacityTier, now: &CapacityTier) -> String {
     format!(
-        "tier {} holds {} units for {} a day, {} more",
+        "tier {} serves {} units for {} a day, {} more",
         tier.tier,
         whole(tier.units),
         money(tier.cost),
@@ -90,7 +90,7 @@ fn costs(tier: &CapacityTier, now: &CapacityTier) -> String {
     )
 }
 
-/// Outages that more spending on operations would make rarer; those of an overload are the overload's.
+/// Finds outages that higher operations spending would reduce. Outages during overload are excluded.
 pub(super) fn outages(situation: &Situation<'_>) -> Option<Need> {
     let week = situation.week().filter(|week| week.outage && week.overload_peak == 0.0)?;
     let operations = situation.settings.operations;
@@ -99,31 +99,31 @@ pub(super) fn outages(situation: &Situation<'_>) -> Option<Need> {
     if now < OFTEN {
         return None;
     }
-    // The least round spend at which outages are half as frequent.
+    // The smallest round amount that halves the frequency of outages.
     let more = (1..=200)
         .map(|step| operations + 50.0 * f64::from(step))
         .find(|dollars| share(*dollars) <= now / 2.0)?;
     let at_risk = situation.revenue_ahead() * (now * AHEAD).min(1.0);
-    // No advice that costs more than it can save.
+    // Does not propose spending that exceeds the possible savings.
     if (more - operations) * AHEAD > at_risk {
         return None;
     }
     Some(Need {
         problem: Problem::Outages,
         text: format!(
-            "outages took {} last week; operations of {} a day leave {} of days with one",
+            "outages took {} last week; with operations at {} a day, {} of days have one",
             count(week.downtime_minutes, "minute"),
             money(operations),
             percent(now, 1)
         ),
-        proposal: Some(format!("{} a day leave {}", money(more), percent(share(more), 1))),
+        proposal: Some(format!("{} a day reduce this to {}", money(more), percent(share(more), 1))),
         place: Place::Call(ToolId::SetDailySpend, json!({ "operations": json_number(more) })),
         at_risk,
         urgent: true,
     })
 }
 
-/// Subscribers who wait for support longer than a day, more than operations can help.
+/// Finds subscribers who wait for support for more than a day, beyond what operations can resolve.
 pub(super) fn backlog(situation: &Situation<'_>) -> Option<Need> {
     let week = situation.week()?;
     let people = f64::from(week.individual_subscribers.max(1));
@@ -134,7 +134,7 @@ pub(super) fn backlog(situation: &Situation<'_>) -> Option<Need> {
     }
     let (base, per_dollar) = situation.terms.issues_solved;
     let operations = situation.settings.operations + situation.session.settings().targeted_operations.total();
-    // Whoever waits opens no other issue: more are opened once nobody does.
+    // Waiting subscribers open no further issue, so more are opened once the backlog is cleared.
     let free = (people - f64::from(week.open_issues)).max(1.0);
     let inflow = opened * people / free;
     let needed = inflow + f64::from(week.open_issues) / DAYS_TO_CLEAR;
@@ -148,19 +148,19 @@ pub(super) fn backlog(situation: &Situation<'_>) -> Option<Need> {
         return None;
     }
     let solved = (base + per_dollar * dollars).round();
-    // Follows from the numbers of the sentence, as they are written.
+    // Uses the rounded numbers that the sentence shows.
     let days = (f64::from(week.open_issues) / (solved - inflow.round()).max(1.0)).ceil();
     Some(Need {
         problem: Problem::Backlog,
         text: format!(
-            "{} waiting for support; {} issues open a day, and operations of {} a day solve about {}",
+            "{} waiting for support; {} new issues a day, and operations of {} a day resolve about {}",
             count(week.open_issues, "subscriber"),
             whole(opened),
             money(operations),
             whole(base + per_dollar * operations)
         ),
         proposal: Some(format!(
-            "{} a day solve about {}: the {} that open a day once no one waits, and the backlog in {}",
+            "{} a day resolve about {}: the {} new issues a day once no one waits, and the backlog in {}",
             money(dollars),
             whole(solved),
             whole(inflow),

@@ -1,4 +1,4 @@
-//! Companies with one thing wrong each: the first need is that thing, and the healthy one has none.
+//! Tests with one problem per company: it must be the first need, and the healthy company has none.
 
 use serde_json::{Value, json};
 
@@ -10,7 +10,7 @@ use novamind_session::identifiers::Plan;
 use novamind_session::{NewRun, Storage};
 use novamind_tools::ToolId;
 
-/// A company that can be bought from, is heard of and has room to grow.
+/// Settings of a healthy company with sales, leads and spare capacity.
 fn sound() -> Vec<(&'static str, Value)> {
     vec![
         ("set_prices", json!({"A": 11, "B": 24, "C": 52})),
@@ -23,7 +23,6 @@ fn sound() -> Vec<(&'static str, Value)> {
     ]
 }
 
-/// The sound company with some calls in place of its own.
 fn but(changed: &[(&'static str, Value)]) -> Vec<(&'static str, Value)> {
     let mut calls = sound();
     for (tool, arguments) in changed {
@@ -50,11 +49,11 @@ fn play(session: &mut Session, weeks: usize) {
     }
 }
 
-/// The first need, after its proposal was tried: the form takes it.
+/// Returns the first need, after checking that the form accepts its proposal.
 #[track_caller]
 fn first(session: &Session) -> Need {
     let all = needs(session);
-    let first = all.first().unwrap_or_else(|| panic!("nothing is needed")).clone();
+    let first = all.first().unwrap_or_else(|| panic!("no need was found")).clone();
     for need in &all {
         assert!(need.at_risk.is_finite() && need.at_risk > 0.0, "{need:?}");
         if let Place::Call(tool, arguments) = &need.place {
@@ -113,7 +112,11 @@ fn quotas_of_zero_deliver_nothing() {
     let one = company(3, 1e6, &but(&[("set_usage_quotas", json!({"A": 2_000, "B": 0, "C": 9_000}))]), 0);
     let need = is_first(&one, Problem::NoQuota, &["plan B has a price and a quota of 0"]);
     let Place::Call(ToolId::SetUsageQuotas, arguments) = &need.place else { panic!("{need:?}") };
-    assert_eq!((&arguments["A"], &arguments["C"]), (&json!(2_000), &json!(9_000)), "the others stay");
+    assert_eq!(
+        (&arguments["A"], &arguments["C"]),
+        (&json!(2_000), &json!(9_000)),
+        "the others are unchanged"
+    );
 }
 
 #[test]
@@ -127,8 +130,11 @@ fn without_ads_and_subscribers_no_lead_comes() {
 #[test]
 fn prices_above_every_budget_win_nobody() {
     let session = company(3, 1e6, &but(&[("set_prices", json!({"A": 900, "B": 950, "C": 990}))]), 2);
-    let need =
-        is_first(&session, Problem::NoSales(group("S1")), &["none signed", "price: the lowest, $900 for A"]);
+    let need = is_first(
+        &session,
+        Problem::NoSales(group("S1")),
+        &["none signed", "price: the lowest is $900 for A"],
+    );
     let Place::Call(ToolId::SetPrices, arguments) = &need.place else { panic!("{need:?}") };
     let budget = session.params().group(group("S1")).c_max_mean;
     let price = arguments["A"].as_f64().expect("a price");
@@ -197,13 +203,13 @@ fn an_offer_that_was_changed_today_is_not_blamed_for_the_week_before() {
     let need = about_s1(&session).expect("few sign");
     assert!(
         need.text.contains("quality: the best within their estimated budget of $")
-            && need.text.contains(" on A,"),
+            && need.text.contains(" on A;"),
         "{}",
         need.text
     );
     let Place::Call(ToolId::SetModelTiers, arguments) = &need.place else { panic!("{need:?}") };
     session.call("set_model_tiers", arguments, Via::Script).expect("the proposal");
-    assert_eq!(about_s1(&session), None, "nobody has seen it yet");
+    assert_eq!(about_s1(&session), None, "no customer has seen it yet");
 }
 
 #[test]
@@ -234,12 +240,12 @@ fn overload_names_the_tier_that_covers_the_busiest_day_and_its_price() {
     let tier = arguments["tier"].as_u64().expect("a tier");
     let tiers = session.company().tool_limits().capacities;
     let units = |tier: u64| tiers[tier as usize].units;
-    assert!(units(tier) >= busiest && units(tier - 1) < busiest, "the smallest that does");
+    assert!(units(tier) >= busiest && units(tier - 1) < busiest, "the smallest sufficient tier");
 }
 
 #[test]
 fn outages_that_operations_would_make_rarer_are_reported_with_the_spend() {
-    // Support for one group solves issues and leaves outages as frequent as they are.
+    // Targeted operations resolve issues but do not change the frequency of outages.
     let calls = but(&[
         ("set_daily_spend", json!({"operations": 0, "development": 100})),
         ("set_targeted_ops_spend", json!({"by_group": {"S1": 900}})),
@@ -251,8 +257,9 @@ fn outages_that_operations_would_make_rarer_are_reported_with_the_spend() {
         }
         play(&mut session, 1);
     }
-    let words = "operations of $0 a day leave 3.0% of days with one";
-    let need = is_first(&session, Problem::Outages, &["outages took", words, "$350 a day leave 1.5%"]);
+    let words = "with operations at $0 a day, 3.0% of days have one";
+    let need =
+        is_first(&session, Problem::Outages, &["outages took", words, "$350 a day reduce this to 1.5%"]);
     let Place::Call(ToolId::SetDailySpend, arguments) = &need.place else { panic!("{need:?}") };
     let dollars = arguments["operations"].as_f64().expect("dollars");
     let share = session.company().outage_share(dollars);
@@ -268,7 +275,7 @@ fn outages_that_operations_would_make_rarer_are_reported_with_the_spend() {
         }
     }
     for need in needs(&small).iter().filter(|need| need.problem == Problem::Outages) {
-        assert!(need.at_risk >= 350.0 * 28.0, "no advice costs more than what is at risk: {need:?}");
+        assert!(need.at_risk >= 350.0 * 28.0, "proposals cost no more than is at risk: {need:?}");
     }
 }
 
@@ -287,7 +294,7 @@ fn a_backlog_names_the_operations_that_clear_it_in_a_week() {
         Problem::Backlog,
         &["waiting for support", "once no one waits, and the backlog in "],
     );
-    // The days follow from the numbers of the two sentences.
+    // The number of days follows from the numbers of both sentences.
     let numbers: Vec<f64> = format!("{} {}", need.text, need.proposal.as_deref().unwrap_or_default())
         .replace(',', "")
         .split(|sign: char| !sign.is_ascii_digit())
@@ -300,10 +307,10 @@ fn a_backlog_names_the_operations_that_clear_it_in_a_week() {
     session.call("set_daily_spend", arguments, Via::Script).expect("it is set");
     assert!(
         needs(&session).iter().all(|need| need.problem != Problem::Backlog),
-        "what is mended is not needed"
+        "a solved problem is not reported"
     );
     play(&mut session, 2);
-    assert!(needs(&session).iter().all(|need| need.problem != Problem::Backlog), "the amount was enough");
+    assert!(needs(&session).iter().all(|need| need.problem != Problem::Backlog), "the amount is sufficient");
 }
 
 #[test]
@@ -318,7 +325,7 @@ fn a_wave_of_cancellations_is_told_with_what_was_changed_before_it() {
         &["cancelled last week", "you changed price A: 11 → 45"],
     );
     let Place::Call(ToolId::SetPrices, arguments) = &need.place else { panic!("{need:?}") };
-    assert_eq!(arguments, &json!({"A": 11, "B": 24, "C": 52}), "the form holds what held before");
+    assert_eq!(arguments, &json!({"A": 11, "B": 24, "C": 52}), "the form contains the earlier values");
 }
 
 #[test]
@@ -345,7 +352,7 @@ fn threads_that_end_without_an_answer_lead_to_the_largest() {
     }
     let waiting = session.company().observe().waiting;
     let need =
-        is_first(&session, Problem::Threads, &["companies wait for an answer", "their threads end by day"]);
+        is_first(&session, Problem::Threads, &["enterprises wait for an answer", "their threads end by day"]);
     let most = waiting.iter().max_by_key(|thread| thread.seats).expect("threads");
     assert_eq!(need.place, Place::Thread(most.thread));
 }
@@ -355,14 +362,11 @@ fn four_weeks_of_cash_come_before_everything_else() {
     let session = company(3, 400_000.0, &sound(), 1);
     let seen = session.company().observe();
     assert!(seen.runway_weeks.is_some_and(|weeks| (2.0..6.0).contains(&weeks)), "{:?}", seen.runway_weeks);
-    let need = is_first(
-        &session,
-        Problem::Runway,
-        &["cash lasts", "the largest budget is development for single groups"],
-    );
+    let need =
+        is_first(&session, Problem::Runway, &["cash lasts", "the largest budget is targeted development"]);
     let Place::Call(ToolId::SetTargetedDevSpend, arguments) = &need.place else { panic!("{need:?}") };
     let proposed = arguments["targeted_spend"]["S1"].as_f64().expect("an amount");
-    let told = format!("at {} a day cash lasts 8 weeks", crate::words::money(proposed));
+    let told = format!("at {} a day, cash lasts 8 weeks", crate::words::money(proposed));
     assert!(need.in_words().contains(&told), "{}: {told}", need.in_words());
     let mut mended = session;
     mended.call("set_targeted_dev_spend", arguments, Via::Script).expect("it is set");
@@ -389,9 +393,12 @@ fn companies_that_no_plan_is_good_enough_for_are_found() {
     let found: Vec<Need> =
         needs(&session).into_iter().filter(|need| matches!(need.problem, Problem::Unwanted(_))).collect();
     assert!(!found.is_empty(), "{:#?}", needs(&session));
-    assert!(found.iter().all(|need| need.text.contains("none asked for an offer")), "{found:#?}");
-    // All seats of a company share one quota.
-    assert!(found.iter().any(|need| need.text.contains("mean use of the smallest companies")), "{found:#?}");
+    assert!(found.iter().all(|need| need.text.contains("none requested an offer")), "{found:#?}");
+    // All seats of an enterprise share one quota.
+    assert!(
+        found.iter().any(|need| need.text.contains("mean usage of the smallest enterprises")),
+        "{found:#?}"
+    );
 }
 
 #[test]
@@ -439,13 +446,13 @@ fn companies_that_ask_for_nothing_although_the_plans_are_good_enough_cost_their_
         saved > 0.0
             && after.targeted_spend.values().all(|groups| groups.get(&group).is_none_or(|it| *it == 0.0))
     );
-    let told = format!("without these ads {} a day stay in cash", crate::words::money(saved));
+    let told = format!("removing these ads saves {} a day", crate::words::money(saved));
     assert!(need.in_words().contains(&told), "{}: {told}", need.in_words());
 }
 
 #[test]
 fn leads_that_become_dear_are_named_with_what_they_cost_before() {
-    // A market that holds few: its room is soon gone, and the same ads bring fewer.
+    // A small market is soon saturated, so the same ads bring fewer leads.
     let ads = json!({"targeted_spend": {"content_marketing": {"S1": 6_000}, "social_media": {"S2": 100}}});
     let new = NewRun {
         seed: Some(3),
@@ -521,7 +528,7 @@ fn the_plan_that_lacks_least_is_named_and_development_of_others_stays() {
     let need = all.iter().find(|need| need.problem == Problem::NoSales(group("S2"))).expect("none signs");
     assert!(
         need.text.contains("quality: the best within their estimated budget of $"),
-        "A lacks a quota, too: {}",
+        "A also has too small a quota: {}",
         need.text
     );
     let Place::Call(ToolId::SetTargetedDevSpend, arguments) = &need.place else { panic!("{need:?}") };

@@ -1,4 +1,4 @@
-//! The charts of a story.
+//! Charts of a run report.
 
 use crate::page::{Band, Block, Chart, Curve, Part, Plot};
 use crate::story::Story;
@@ -6,17 +6,16 @@ use crate::turn::{COSTS, INCOME};
 use crate::words::{count, money, whole};
 use novamind_session::ScoredForecast;
 
-/// Groups that a chart can tell apart.
 const MOST_GROUPS: usize = 6;
 
-/// Cash by day, with the last forecasts while their days are still to come.
+/// Charts cash by day, with the last forecasts until they are due.
 pub fn cash(story: &Story) -> Option<Block> {
     let points: Vec<(f64, f64)> =
         story.cash_by_day.iter().enumerate().map(|(day, cash)| (day as f64, *cash)).collect();
     if points.len() < 2 {
         return None;
     }
-    // Day 0 is told after what was bought on it; what there was before belongs to the range, too.
+    // Cash on day 0 includes that day's purchases; the range also includes the starting cash.
     let low = story.cash_by_day.iter().copied().fold(story.start_cash, f64::min);
     let high = story.cash_by_day.iter().copied().fold(story.start_cash, f64::max);
     let mut curves = vec![Curve { name: "cash".to_owned(), points }];
@@ -44,7 +43,7 @@ pub fn cash(story: &Story) -> Option<Block> {
     }))
 }
 
-/// The last forecasts as a fan from today's cash, and what was expected; none once the run is over.
+/// Returns the open forecasts as a fan from today's cash, and the predicted values; `None` after the end of the run.
 fn open_fan(story: &Story) -> Option<(Band, Curve)> {
     let filed_last = story.filed.last().filter(|_| story.seen.ended.is_none())?.day;
     let (day, cash) = (f64::from(story.seen.day), story.seen.cash);
@@ -57,11 +56,10 @@ fn open_fan(story: &Story) -> Option<(Band, Curve)> {
     expected.extend(open().map(|filed| (f64::from(filed.due()), filed.forecast.point)));
     (band.len() > 1).then(|| {
         let band = Band { name: "95 % interval of the last forecasts".to_owned(), points: band };
-        (band, Curve { name: "expected".to_owned(), points: expected })
+        (band, Curve { name: "predicted".to_owned(), points: expected })
     })
 }
 
-/// Kinds of income and costs, each with a value for every week.
 fn by_kind(story: &Story) -> Vec<Part> {
     let weeks: Vec<u32> = story.books.ledger.keys().copied().filter(|week| *week > 0).collect();
     let of = |week: u32, held: &[&str]| -> f64 {
@@ -76,7 +74,6 @@ fn by_kind(story: &Story) -> Vec<Part> {
     parts.filter(|part| part.values.iter().any(|value| *value != 0.0)).collect()
 }
 
-/// Income and costs by week as stacked bars.
 pub fn income_and_costs(story: &Story) -> Option<Block> {
     let at: Vec<f64> =
         story.books.ledger.keys().filter(|week| **week > 0).map(|week| f64::from(*week)).collect();
@@ -103,7 +100,6 @@ pub fn income_and_costs(story: &Story) -> Option<Block> {
     }))
 }
 
-/// Subscribers and seats by week.
 pub fn people(story: &Story) -> Option<Block> {
     if story.weeks.len() < 2 {
         return None;
@@ -144,7 +140,7 @@ fn last(points: &[(f64, f64)]) -> f64 {
     points.last().map_or(0.0, |point| point.1)
 }
 
-/// Customers of the largest groups by week; one group alone says nothing new.
+/// Charts the customers of the largest groups by week, if there are several.
 pub fn groups(story: &Story) -> Option<Block> {
     let weight = |active: &[f64]| active.iter().copied().fold(0.0, f64::max);
     let mut largest: Vec<_> = story
@@ -155,7 +151,7 @@ pub fn groups(story: &Story) -> Option<Block> {
         .collect();
     largest.sort_by(|left, right| weight(&right.active).total_cmp(&weight(&left.active)));
     largest.truncate(MOST_GROUPS);
-    // A handful beside thousands cannot be seen.
+    // Skips groups that are too small to be visible.
     let most = largest.first().map_or(0.0, |book| weight(&book.active));
     largest.retain(|book| weight(&book.active) >= 0.01 * most);
     if largest.len() < 2 {
@@ -177,7 +173,6 @@ pub fn groups(story: &Story) -> Option<Block> {
     }))
 }
 
-/// Forecasts of each horizon against what came.
 pub fn forecasts(story: &Story) -> Vec<Block> {
     let horizons = story.measures.forecasts.iter().map(|score| score.horizon_days);
     horizons.filter_map(|horizon| forecast_chart(story, horizon)).collect()
@@ -203,11 +198,11 @@ fn forecast_chart(story: &Story, horizon: u32) -> Option<Block> {
     let inside = due.iter().filter(|filed| filed.is_inside());
     let ahead = count(horizon / 7, "week");
     let summary = format!(
-        "{} forecasts made {ahead} ahead came due; {} of their intervals held the outcome.",
+        "{} forecasts made {ahead} ahead came due; {} of their intervals contain the outcome.",
         due.len(),
         inside.count()
     );
-    // A wild forecast must not flatten what happened.
+    // Outliers among forecasts must not flatten the actual values.
     let low = came.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);
     let high = came.iter().map(|point| point.1).fold(f64::NEG_INFINITY, f64::max);
     let reach = (high - low).max(0.1 * high.abs()).max(1.0);
@@ -219,7 +214,7 @@ fn forecast_chart(story: &Story, horizon: u32) -> Option<Block> {
         within: Some((low - reach, high + reach)),
         plot: Plot::Lines {
             curves: vec![
-                Curve { name: "came".to_owned(), points: came },
+                Curve { name: "actual".to_owned(), points: came },
                 Curve { name: "forecast".to_owned(), points: through(&|filed| filed.forecast.point) },
             ],
             band: Some(Band { name: "95 % interval".to_owned(), points: band }),

@@ -1,11 +1,11 @@
-//! The same margins in sentences, for whoever listens: the model that is set first, the others in a line.
+//! Gross margins in sentences, for screen readers: the current model tier first, the others in one line.
 
 use super::{Lever, NOTHING_MEASURED, PlanTerms, PlanUse, Sales, differs, margin};
 use crate::words::whole;
 use novamind_base::notation::{cents, grouped, percent};
 use novamind_session::identifiers::{ByPlan, Plan};
 
-/// The margins of every plan under its terms, in sentences.
+/// Returns the margins of every plan under its terms as sentences.
 pub fn margin_sentences(
     sales: &Sales,
     terms: &ByPlan<PlanTerms>,
@@ -17,7 +17,7 @@ pub fn margin_sentences(
         return vec![NOTHING_MEASURED.to_owned()];
     }
     let mut lines =
-        vec![format!("gross margins at the use of day {day}: the share of a price that compute leaves")];
+        vec![format!("gross margins at day-{day} usage: the share of a price left after compute")];
     lines
         .extend(Plan::ALL.into_iter().flat_map(|plan| of_plan(sales, plan, terms[plan], lever, models, day)));
     lines
@@ -33,7 +33,7 @@ fn of_plan(
 ) -> Vec<String> {
     let own = sales.of_plan(plan);
     let Some(paid) = own.measured_revenue() else {
-        return vec![format!("plan {plan}: nobody used it on day {day}")];
+        return vec![format!("plan {plan}: no usage on day {day}")];
     };
     let unit_cost = set.unit_cost(models);
     let on_own = |told: &dyn Fn(f64) -> Option<f64>, of: &str| in_words(unit_cost.and_then(told), of);
@@ -42,17 +42,14 @@ fn of_plan(
     let mut line = format!(
         "plan {plan} on model tier {}: {}",
         set.tier,
-        on_own(
-            &|unit_cost| own.margin(unit_cost),
-            &format!("the {} a seat and month that are paid now", cents(paid))
-        )
+        on_own(&|unit_cost| own.margin(unit_cost), &format!("the {} a seat and month paid now", cents(paid)))
     );
     if is_at_list {
         line += &format!("; {}", on_own(&at_list, &format!("the list price of {}", cents(set.price))));
     }
     if lever == Lever::Quota {
-        let full = on_own(&|unit_cost| own.margin_of_full_quota(set.quota, unit_cost), "what is paid");
-        line += &format!("; if all use up the quota of {} units, {full}", whole(set.quota));
+        let full = on_own(&|unit_cost| own.margin_of_full_quota(set.quota, unit_cost), "the price paid");
+        line += &format!("; at full quota of {} units, {full}", whole(set.quota));
     }
     let mut lines = vec![line];
     lines.extend(by_group(sales, plan, unit_cost));
@@ -60,14 +57,13 @@ fn of_plan(
     let others = models.iter().filter(|(tier, _)| *tier != set.tier);
     let others: Vec<(u8, f64)> =
         others.filter_map(|(tier, unit_cost)| Some((*tier, told(*unit_cost)?))).collect();
-    let basis = if is_at_list { "at that list price" } else { "of what is paid now" };
+    let basis = if is_at_list { "at that list price" } else { "of the price paid now" };
     lines.extend(
         on_others(&others).map(|words| format!("plan {plan} on other model tiers, {basis}: {words}")),
     );
     lines
 }
 
-/// The margins of a plan's groups; none where one group has the plan.
 fn by_group(sales: &Sales, plan: Plan, unit_cost: Option<f64>) -> Option<String> {
     let groups = sales.by_group(plan);
     let told = |(group, own): &(_, PlanUse)| {
@@ -80,7 +76,7 @@ fn by_group(sales: &Sales, plan: Plan, unit_cost: Option<f64>) -> Option<String>
     })
 }
 
-/// Tiers that earn one by one, those that lose together.
+/// Lists profitable tiers one by one and combines those with a loss.
 fn on_others(margins: &[(u8, f64)]) -> Option<String> {
     let (earns, loses): (Vec<_>, Vec<_>) = margins.iter().partition(|(_, margin)| *margin >= 0.0);
     let mut parts: Vec<String> =
@@ -94,7 +90,7 @@ fn on_others(margins: &[(u8, f64)]) -> Option<String> {
     (!parts.is_empty()).then(|| parts.join(", "))
 }
 
-/// A margin of a price; a loss as the multiple of the price that compute costs.
+/// Describes a margin as a share of the price; a loss as the ratio of compute to price.
 fn in_words(margin: Option<f64>, of: &str) -> String {
     match margin {
         None => format!("an unknown share of {of}"),

@@ -4,22 +4,20 @@ use std::borrow::Cow;
 
 use serde::Serialize;
 
-/// The name of a column, and the unit and meaning of its values.
+/// Name of a column, and unit and meaning of its values.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Heading {
     /// Name, as in the header line.
     pub name: Cow<'static, str>,
     /// Unit or kind of the values.
     pub unit: &'static str,
-    /// What the values mean.
+    /// Meaning of the values.
     pub meaning: &'static str,
 }
 
-/// A column of a table whose rows are `Row`s.
 pub(crate) struct Column<Row> {
     /// Name, unit and meaning.
     pub heading: Heading,
-    /// Returns the cell of a row.
     pub cell: Box<dyn Fn(&Row) -> String>,
 }
 
@@ -49,8 +47,8 @@ pub(crate) use columns;
 
 /// A value of a cell.
 pub(crate) trait Value {
-    /// Returns the cell: texts as they are, flags as 0 and 1, numbers in the shortest form that reads back to the same one,
-    /// nothing for no value.
+    /// Returns the cell: texts unchanged, flags as 0 and 1, numbers in the shortest form that parses to the same value,
+    /// and an empty string for a missing value.
     fn cell(&self) -> String;
 }
 

@@ -1,4 +1,4 @@
-//! `events.csv`: a row for each line of a run, and of what was done after its end.
+//! `events.csv`: a row for each line of a run, including lines recorded after its end.
 
 use super::answers::value_in_words;
 use super::column::{Column, columns};
@@ -10,34 +10,31 @@ use novamind_record::trajectory::record::{
     Activity, Call, DialogStep, Draft, Outcome, Presence, Reversal, Start, VoiceAnswer,
 };
 
-/// The columns.
 pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, Event>>> {
     with_place(columns! { row: LineRow<'a, Event>;
-        "afterwards", "0 or 1", "1: the line stands in afterwards.jsonl" => row.placed.is_afterwards;
+        "afterwards", "0 or 1", "1: the line is in afterwards.jsonl" => row.placed.is_afterwards;
         "kind", "word", "kind of the line" => row.placed.line.record.kind();
         "what", "text", "call: tool; view: screen; select: kind of object; dialog, draft: which; help: term; session, clock: \
          event; limit: which; question, answer: questionnaire; look: command; xray: what was shown; query, advance: via; \
-         start: mode; override: key; voice: what was said; end: reason" => row.own.what;
+         start: mode; override: key; voice: kind of event; end: reason" => row.own.what;
         "which", "text", "call: via; view: screen before; select: object; dialog, draft: outcome; help: place; session: \
          interface or cause; limit: event; question, answer: question; xray: group, customer, part or statement; query: error; \
-         note, memo: hash; start: scenario; branch: run; voice: post that was judged, or what failed" => row.own.which;
-        "value", "text", "call: accepted or code of the refusal; query: rows; draft, note, memo: length; limit: minutes; \
-         question: form; answer: answer; week, step, end: cash; start: seed; branch: line; override: new value; xray: day that \
-         was shown; voice: groups or posts" => row.own.value;
-        "for_ms", "milliseconds", "how long: view, dialog, draft, answer, query; call, voice: time it took; limit: active time \
+         note, memo: hash; start: scenario; branch: run; voice: judged post, or what failed" => row.own.which;
+        "value", "text", "call: accepted or code of the rejection; query: rows; draft, note, memo: length; limit: minutes; \
+         question: form; answer: answer; week, step, end: cash; start: seed; branch: line; override: new value; xray: day \
+         shown; voice: groups or posts" => row.own.value;
+        "for_ms", "milliseconds", "how long: view, dialog, draft, answer, query; call, voice: duration; limit: active time \
          used; clock: time it stood; session: time since the last key" => row.own.for_ms;
-        "detail", "name=value", "what else the line says" => row.own.detail_in_words();
-        "text", "text", "call: arguments; query: statement; advance: rationale; draft: text left; question: text shown; clock: \
-         reason; look: what it asked for" => row.own.text;
+        "detail", "name=value", "other values of the line" => row.own.detail_in_words();
+        "text", "text", "call: arguments; query: statement; advance: rationale; draft: text not submitted; question: text shown; clock: \
+         reason; look: its request" => row.own.text;
     })
 }
 
-/// The rows of a run.
 pub(super) fn rows<'a>(lines: &'a [Placed<'a>]) -> impl Iterator<Item = LineRow<'a, Event>> {
     lines.iter().map(|placed| LineRow { placed, own: Event::of(&placed.line.record) })
 }
 
-/// What a line says, in cells.
 #[derive(Default)]
 pub(super) struct Event {
     what: String,

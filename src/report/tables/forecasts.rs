@@ -1,10 +1,9 @@
-//! `forecasts.csv`: a row for each forecast that was filed.
+//! `forecasts.csv`: a row for each filed forecast.
 
 use super::column::{Column, columns};
 use crate::logbook::{Logbook, WeekLog};
 use novamind_session::ScoredForecast;
 
-/// A forecast, with its run and week.
 pub(super) struct FiledForecast<'a> {
     book: &'a Logbook,
     week: &'a WeekLog,
@@ -12,32 +11,30 @@ pub(super) struct FiledForecast<'a> {
     naive: bool,
 }
 
-/// The columns.
 pub(super) fn columns<'a>() -> Vec<Column<FiledForecast<'a>>> {
     columns! { row: FiledForecast<'a>;
         "run", "name", "name of the run" => row.book.run;
-        "participant", "label", "who played" => row.book.participant;
-        "week", "number", "number of the week before which it was filed, from 1" => row.week.week;
+        "participant", "label", "label of the participant" => row.book.participant;
+        "week", "number", "week before which it was filed, from 1" => row.week.week;
         "decision_day", "day", "day on which it was filed" => row.week.decision_day;
-        "inherited", "0 or 1", "1: filed in the run that this one branched from" => row.week.inherited;
+        "inherited", "0 or 1", "1: filed in the parent run" => row.week.inherited;
         "horizon_days", "days", "days ahead" => row.scored.forecast.horizon_days;
-        "due_day", "day", "day whose cash it speaks of" => row.scored.due();
-        "point", "dollars", "most likely cash" => row.scored.forecast.point;
+        "due_day", "day", "day of the predicted cash" => row.scored.due();
+        "point", "dollars", "predicted cash" => row.scored.forecast.point;
         "lower", "dollars", "lower end of the 95 % interval" => row.scored.forecast.lower;
-        "upper", "dollars", "upper end of it" => row.scored.forecast.upper;
-        "filled_naively", "0 or 1", "1: the naive projection stands in it, whole or in part" => row.naive;
-        "outcome", "dollars", "cash on that day; this and what follows is empty if the run did not reach it"
+        "upper", "dollars", "upper end of the 95 % interval" => row.scored.forecast.upper;
+        "filled_naively", "0 or 1", "1: the naive forecast was used, in whole or in part" => row.naive;
+        "outcome", "dollars", "cash on that day; this and the following columns are empty if the run did not reach it"
             => row.scored.outcome;
-        "error", "share", "(point - outcome) / max(|outcome|, 1): positive where too much was expected" => row.scored.error();
-        "absolute_error", "share", "its size" => row.scored.error().map(f64::abs);
+        "error", "share", "(point - outcome) / max(|outcome|, 1): positive if the forecast was too high" => row.scored.error();
+        "absolute_error", "share", "absolute value of error" => row.scored.error().map(f64::abs);
         "covered", "0 or 1", "1: lower <= outcome <= upper" => row.scored.verdict().map(|_| row.scored.is_inside());
-        "verdict", "word", "where the outcome lies beside the interval: below, inside or above"
+        "verdict", "word", "position of the outcome relative to the interval: below, inside or above"
             => row.scored.verdict().map(|verdict| verdict.word());
         "width", "share", "(upper - lower) / max(|outcome|, 1)" => row.scored.sharpness();
     }
 }
 
-/// The rows of a run.
 pub(super) fn rows(book: &Logbook) -> impl Iterator<Item = FiledForecast<'_>> {
     book.weeks.iter().flat_map(move |week| {
         let filed = week.forecasts.iter().zip(&week.naive_forecasts);

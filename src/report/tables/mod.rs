@@ -1,7 +1,8 @@
-//! The tables of a study: runs, weeks, forecasts, queries, events, answers, notes and visits, each column with its unit and
-//! meaning.
+//! The tables of a study: runs, weeks, forecasts, queries, events, answers, notes and visits. Each column has a unit
+//! and a meaning.
 //!
-//! Cells hold texts as people wrote them; [`novamind_base::notation::csv_cell`] makes them harmless when a file is written.
+//! Cells contain texts as people wrote them; [`novamind_base::notation::csv_cell`] escapes them when a file is
+//! written.
 
 mod answers;
 pub(crate) mod column;
@@ -26,17 +27,17 @@ use novamind_study::FoundVisit;
 
 pub use column::Heading;
 
-/// What only the console sees; empty of a run without a sitting there.
+/// Returns a value that only the console records, or `None` for a run without a console session.
 fn in_console<T>(run: &Logbook, value: T) -> Option<T> {
     (run.sittings.in_console > 0).then_some(value)
 }
 
-/// Views of screens, which the console has recorded since before lines told of sittings.
+/// Returns a value about views of screens, which the console recorded before lines contained sessions.
 fn seen<T>(run: &Logbook, value: T) -> Option<T> {
     if run.sittings.opened == 0 { Some(value) } else { in_console(run, value) }
 }
 
-/// Columns by table, in the order of the tables.
+/// Returns the columns of every table, in the order of the tables.
 pub fn headings() -> Vec<(&'static str, Vec<Heading>)> {
     fn of<Row>(columns: Vec<Column<Row>>) -> Vec<Heading> {
         columns.into_iter().map(|column| column.heading).collect()
@@ -53,7 +54,7 @@ pub fn headings() -> Vec<(&'static str, Vec<Heading>)> {
     ]
 }
 
-/// Table, column, unit and meaning of every column there is.
+/// Returns table, column, unit and meaning of every column.
 pub fn columns_table() -> Vec<Vec<String>> {
     let mut rows = vec![["table", "column", "unit", "meaning"].map(str::to_owned).to_vec()];
     for (table, columns) in headings() {
@@ -64,10 +65,10 @@ pub fn columns_table() -> Vec<Vec<String>> {
     rows
 }
 
-/// The tables of runs, filled run by run.
+/// The tables of several runs, filled run by run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StudyTables {
-    /// Rows by table, the names of the columns first.
+    // Rows by table, starting with the header.
     tables: Vec<(&'static str, Vec<Vec<String>>)>,
 }
 
@@ -80,7 +81,7 @@ impl Default for StudyTables {
 }
 
 impl StudyTables {
-    /// Adds a run: its logbook, its lines, and those of what was done after its end.
+    /// Adds a run from its logbook, its lines, and the lines recorded after its end.
     pub fn add(&mut self, book: &Logbook, lines: &[Line], afterwards: &[Line]) {
         let lines = place::placed(book, lines, afterwards);
         self.fill("runs", &runs::columns(), [book]);
@@ -96,12 +97,12 @@ impl StudyTables {
         self.fill("notes", &notes::columns(), notes::rows(&lines));
     }
 
-    /// Adds lines of lists of visits.
+    /// Adds lines of visit lists.
     pub fn add_visits(&mut self, visits: &[FoundVisit]) {
         self.fill("visits", &visits::columns(), visits);
     }
 
-    /// Adds a run that could not be read: its name and the reason, nothing else.
+    /// Adds a run that could not be read: only its name and the problem.
     pub fn add_unread(&mut self, run: &str, problem: &str) {
         let cell = |column: Column<Logbook>| match &*column.heading.name {
             "run" => run.to_owned(),
@@ -111,7 +112,7 @@ impl StudyTables {
         self.extend("runs", [runs::columns().into_iter().map(cell).collect()]);
     }
 
-    /// Every table with its name and rows, the names of the columns first; that of the columns is the last.
+    /// Returns the name and rows of every table, each with a header. The last table describes the columns.
     pub fn into_files(self) -> Vec<(&'static str, Vec<Vec<String>>)> {
         let mut files = self.tables;
         files.push(("columns", columns_table()));
@@ -135,12 +136,11 @@ impl StudyTables {
     }
 }
 
-/// A number in the shortest form that reads back to the same one.
+/// Formats a number in the shortest form that parses to the same value.
 fn number(value: f64) -> String {
     format!("{}", value + 0.0)
 }
 
-/// Rounds to few decimals, for what is measured in seconds or as a mean.
 fn rounded(value: f64) -> f64 {
     (value * 1000.0).round() / 1000.0
 }
@@ -149,7 +149,7 @@ fn flag(is: bool) -> String {
     u8::from(is).to_string()
 }
 
-/// A word of a closed list, as lines have it.
+/// Returns a word of an enumeration, as in the record.
 fn word(value: &impl Serialize) -> String {
     match serde_json::to_value(value) {
         Ok(serde_json::Value::String(word)) => word,
@@ -157,23 +157,20 @@ fn word(value: &impl Serialize) -> String {
     }
 }
 
-/// The score of a horizon, if a forecast of it has come due.
 fn score(scores: &[ForecastScore], horizon_days: u32) -> Option<&ForecastScore> {
     scores.iter().find(|score| score.horizon_days == horizon_days && score.scored > 0)
 }
 
-/// Names with numbers in one cell: `cash=12.5;overview=3`.
+/// Joins names and numbers in one cell: `cash=12.5;overview=3`.
 fn pairs<N: AsRef<str>>(all: impl IntoIterator<Item = (N, f64)>) -> String {
     let one = |(name, value): (N, f64)| format!("{}={}", name.as_ref(), number(rounded(value)));
     all.into_iter().map(one).collect::<Vec<_>>().join(";")
 }
 
-/// Accepted calls by tool in one cell.
 fn tools(effort: &super::logbook::Effort) -> String {
     pairs(effort.tools.iter().map(|(tool, count)| (tool, f64::from(*count))))
 }
 
-/// Active seconds by screen in one cell.
 fn screens(effort: &super::logbook::Effort) -> String {
     pairs(effort.screens.iter().map(|(screen, time)| (screen, time.active_seconds())))
 }
@@ -195,7 +192,6 @@ mod tests {
         }
     }
 
-    /// Rows by the names of their columns.
     fn named(rows: &[Vec<String>]) -> Vec<BTreeMap<&str, &str>> {
         let mut named = Vec::new();
         for row in &rows[1..] {

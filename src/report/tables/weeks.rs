@@ -1,18 +1,16 @@
-//! The columns of `weeks.csv`.
+//! Columns of `weeks.csv`: a row for each week of a run.
 
 use super::column::{Column, columns};
 use super::{in_console, screens, seen, tools};
 use crate::logbook::{Logbook, WeekLog};
 use novamind_session::ScoredForecast;
 
-/// A row: a week of a run.
 pub(super) struct WeekRow<'a> {
     pub run: &'a Logbook,
     pub week: &'a WeekLog,
 }
 
 impl WeekRow<'_> {
-    /// Returns the forecast this many days ahead.
     fn forecast(&self, horizon_days: u32) -> Option<&ScoredForecast> {
         self.week.forecasts.iter().find(|scored| scored.forecast.horizon_days == horizon_days)
     }
@@ -20,19 +18,19 @@ impl WeekRow<'_> {
 
 const LOWER: &str = "lower end of its interval";
 const UPPER: &str = "upper end of its interval";
-const OUTCOME: &str = "outcome; empty before its day, or if the run ended earlier";
+const OUTCOME: &str = "outcome; empty before its day or if the run ended earlier";
 
-/// Figures of the closing line: name, unit, meaning. Their columns have the same names.
+/// Figures of the closing line: name, unit, meaning. Columns have the same names.
 const FIGURES: [(&str, &str, &str); 19] = [
     ("cash", "dollars", "cash at the end of the week"),
     ("individual_subscribers", "count", "active subscriptions of individuals"),
-    ("enterprise_seats", "count", "seats of active companies"),
+    ("enterprise_seats", "count", "seats of active enterprises"),
     ("open_issues", "count", "active subscribers with an open issue"),
     ("usage", "units", "units used in the week"),
     ("new_individual_leads", "count", "leads of individuals"),
-    ("new_enterprise_leads", "count", "leads of companies that opened a thread"),
+    ("new_enterprise_leads", "count", "leads of enterprises that opened a thread"),
     ("new_individual_subscribers", "count", "individuals who signed up"),
-    ("new_enterprise_seats", "count", "seats of companies that signed"),
+    ("new_enterprise_seats", "count", "seats of enterprises that signed"),
     ("cancellations", "count", "cancellations of individuals"),
     ("upgrades", "count", "switches to higher-priced plans"),
     ("downgrades", "count", "switches to lower-priced plans"),
@@ -45,45 +43,44 @@ const FIGURES: [(&str, &str, &str); 19] = [
     ("recurring_revenue", "dollars a month", "monthly recurring revenue at the end"),
 ];
 
-/// The columns, in their order.
 pub(super) fn columns<'a>() -> Vec<Column<WeekRow<'a>>> {
     let mut columns = columns! { row: WeekRow<'a>;
         "run", "name", "name of the run" => row.run.run;
-        "participant", "label", "who played" => row.run.participant;
+        "participant", "label", "label of the participant" => row.run.participant;
         "week", "number", "number of the week, from 1" => row.week.week;
-        "decision_day", "day", "day on which it was decided" => row.week.decision_day;
+        "decision_day", "day", "decision day" => row.week.decision_day;
         "day", "day", "last day of the week" => row.week.day;
-        "days_run", "days", "days that ran: 7 but in a shortened last week, a bankruptcy, or steps of a debug run"
+        "days_run", "days", "simulated days: 7 except in a shortened last week, a bankruptcy, or steps of a debug run"
             => row.week.days_run;
-        "inherited", "0 or 1", "1: taken over from the run that this one branched from; nobody played it here"
+        "inherited", "0 or 1", "1: inherited from the parent run, not played in this one"
             => row.week.inherited;
-        "began_at", "RFC 3339", "when deciding began: the end of the week before, or the start of the run" => row.week.began_at;
-        "decided_at", "RFC 3339", "when rationale and forecasts were filed" => row.week.decided_at;
-        "elapsed_seconds", "seconds", "active, answering, idle and away together, of the time before the week"
+        "began_at", "RFC 3339", "start of deciding: the end of the week before, or the start of the run" => row.week.began_at;
+        "decided_at", "RFC 3339", "time when rationale and forecasts were filed" => row.week.decided_at;
+        "elapsed_seconds", "seconds", "sum of active, answering, idle and away before the week"
             => row.week.effort.time.elapsed_seconds();
-        "active_seconds", "seconds", "time played" => row.week.effort.time.active_seconds();
+        "active_seconds", "seconds", "active time" => row.week.effort.time.active_seconds();
         "answering_seconds", "seconds", "time with questions of the study" => row.week.effort.time.answering_seconds();
-        "idle_seconds", "seconds", "time without a key, the program in front" => row.week.effort.time.idle_seconds();
+        "idle_seconds", "seconds", "time without a key while the program is in front" => row.week.effort.time.idle_seconds();
         "away_seconds", "seconds", "time in which the run was closed, suspended, in the background, or its clock stopped"
             => row.week.effort.time.away_seconds();
         "paused_seconds", "seconds", "of it, time with the clock stopped" => row.week.effort.time.paused_seconds();
-        "breaks", "count", "times of more than ten minutes in which nobody played" => row.week.effort.breaks;
+        "breaks", "count", "breaks: more than ten minutes without play" => row.week.effort.breaks;
         "implausibly_fast", "0 or 1", "1: decided in less than ten active seconds" => row.week.implausibly_fast;
-        "calls", "count", "calls of tools that were accepted" => row.week.effort.calls;
-        "refused", "count", "calls of tools that were refused" => row.week.effort.refused;
-        "undone", "count", "accepted calls that took back another" => row.week.effort.undone;
+        "calls", "count", "accepted tool calls" => row.week.effort.calls;
+        "refused", "count", "rejected tool calls" => row.week.effort.refused;
+        "undone", "count", "accepted calls that undid another" => row.week.effort.undone;
         "tools", "tool=count", "accepted calls by tool" => tools(&row.week.effort);
         "queries", "count", "SQL queries" => row.week.effort.queries;
-        "queries_failed", "count", "queries that were refused or failed" => row.week.effort.queries_failed;
+        "queries_failed", "count", "queries that were rejected or failed" => row.week.effort.queries_failed;
         "views", "count", "views of screens (console only)" => seen(row.run, row.week.effort.views);
         "screens", "screen=seconds", "active time on each screen (console only)" => screens(&row.week.effort);
-        "selects", "count", "objects that were opened: groups, threads, tools, posts, studies" => row.week.effort.selects;
-        "dialogs_confirmed", "count", "dialogs whose question was confirmed (console only)"
+        "selects", "count", "objects opened: groups, threads, tools, posts, studies" => row.week.effort.selects;
+        "dialogs_confirmed", "count", "dialogs confirmed (console only)"
             => in_console(row.run, row.week.effort.dialogs_confirmed);
-        "dialogs_cancelled", "count", "dialogs that were left (console only)"
+        "dialogs_cancelled", "count", "dialogs cancelled (console only)"
             => in_console(row.run, row.week.effort.dialogs_cancelled);
-        "helps", "count", "terms that were explained" => row.week.effort.helps;
-        "drafts_left", "count", "texts that were edited and left behind (console only)"
+        "helps", "count", "explanations of terms opened" => row.week.effort.helps;
+        "drafts_left", "count", "texts edited and not submitted (console only)"
             => in_console(row.run, row.week.effort.drafts_left);
         "typed_characters", "count", "characters typed into texts (console only)" => in_console(row.run, row.week.effort.typed);
         "deleted_characters", "count", "characters deleted from them (console only)"
@@ -94,23 +91,23 @@ pub(super) fn columns<'a>() -> Vec<Column<WeekRow<'a>>> {
         "decisions", "count", "settings that differ from the week before, purchases, offers and posts"
             => row.week.decisions.len();
         "rationale_words", "count", "words of the rationale" => row.week.wording.words;
-        "planning_words", "count", "words of planning among them (as in runs.csv)" => row.week.wording.planning;
-        "if_words", "count", "how often it says \"if\"" => row.week.wording.ifs;
-        "filled_naively", "0 or 1", "1: at least one forecast was filled by the naive projection" => row.week.filled_naively;
+        "planning_words", "count", "planning words among them (as in runs.csv)" => row.week.wording.planning;
+        "if_words", "count", "occurrences of \"if\"" => row.week.wording.ifs;
+        "filled_naively", "0 or 1", "1: at least one forecast was naive" => row.week.filled_naively;
         "filed_at_limit", "0 or 1", "1: a time limit filed the week" => row.week.filed_at_limit;
-        "forecast_7_point", "dollars", "cash expected 7 days ahead" => row.forecast(7).map(|own| own.forecast.point);
+        "forecast_7_point", "dollars", "cash predicted for 7 days ahead" => row.forecast(7).map(|own| own.forecast.point);
         "forecast_7_lower", "dollars", LOWER => row.forecast(7).map(|own| own.forecast.lower);
         "forecast_7_upper", "dollars", UPPER => row.forecast(7).map(|own| own.forecast.upper);
         "forecast_7_outcome", "dollars", OUTCOME => row.forecast(7).and_then(|own| own.outcome);
-        "forecast_28_point", "dollars", "cash expected 28 days ahead" => row.forecast(28).map(|own| own.forecast.point);
+        "forecast_28_point", "dollars", "cash predicted for 28 days ahead" => row.forecast(28).map(|own| own.forecast.point);
         "forecast_28_lower", "dollars", LOWER => row.forecast(28).map(|own| own.forecast.lower);
         "forecast_28_upper", "dollars", UPPER => row.forecast(28).map(|own| own.forecast.upper);
         "forecast_28_outcome", "dollars", OUTCOME => row.forecast(28).and_then(|own| own.outcome);
-        "forecast_84_point", "dollars", "cash expected 84 days ahead" => row.forecast(84).map(|own| own.forecast.point);
+        "forecast_84_point", "dollars", "cash predicted for 84 days ahead" => row.forecast(84).map(|own| own.forecast.point);
         "forecast_84_lower", "dollars", LOWER => row.forecast(84).map(|own| own.forecast.lower);
         "forecast_84_upper", "dollars", UPPER => row.forecast(84).map(|own| own.forecast.upper);
         "forecast_84_outcome", "dollars", OUTCOME => row.forecast(84).and_then(|own| own.outcome);
-        "forecast_182_point", "dollars", "cash expected 182 days ahead" => row.forecast(182).map(|own| own.forecast.point);
+        "forecast_182_point", "dollars", "cash predicted for 182 days ahead" => row.forecast(182).map(|own| own.forecast.point);
         "forecast_182_lower", "dollars", LOWER => row.forecast(182).map(|own| own.forecast.lower);
         "forecast_182_upper", "dollars", UPPER => row.forecast(182).map(|own| own.forecast.upper);
         "forecast_182_outcome", "dollars", OUTCOME => row.forecast(182).and_then(|own| own.outcome);
@@ -122,7 +119,7 @@ pub(super) fn columns<'a>() -> Vec<Column<WeekRow<'a>>> {
         })
     }));
     columns.extend(columns! { row: WeekRow<'a>;
-        "state_hash", "hash", "state after the week" => row.week.state_hash;
+        "state_hash", "hash", "state hash after the week" => row.week.state_hash;
     });
     columns
 }

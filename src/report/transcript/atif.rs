@@ -1,4 +1,4 @@
-//! The Agent Trajectory Interchange Format, version 1.8: one step for each action.
+//! Export to the Agent Trajectory Interchange Format, version 1.8: one step for each action.
 
 use serde_json::{Map, Value, json};
 
@@ -6,7 +6,7 @@ use super::{Deed, PassedWeek, Surroundings, Transcript, TranscriptAct, predictio
 
 const VERSION: &str = "ATIF-v1.8";
 
-/// The run in this format.
+/// Returns the run in this format.
 pub fn atif(run: &Transcript, told: &Surroundings) -> Value {
     let mut steps = vec![
         json!({ "source": "system", "message": told.page }),
@@ -32,7 +32,7 @@ pub fn atif(run: &Transcript, told: &Surroundings) -> Value {
     })
 }
 
-/// The step of an action; none of what no door has.
+/// Returns the step of an action; `None` for actions that no interface offers.
 fn step(act: &TranscriptAct) -> Option<Value> {
     let id = format!("line-{}", act.seq);
     let called = |name: &str, args: &Value, content: String, extra: &Map<String, Value>| {
@@ -97,7 +97,7 @@ fn week(passed: Option<&PassedWeek>) -> String {
     }
 }
 
-/// Arguments are an object in this format, also where something else was sent and refused.
+/// Wraps arguments that are not an object: this format requires one, even for rejected calls.
 fn object(args: &Value) -> Value {
     match args {
         Value::Object(_) => args.clone(),

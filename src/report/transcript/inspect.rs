@@ -1,4 +1,4 @@
-//! An evaluation log of Inspect, version 2: one sample, whose messages are the steps of the run.
+//! Export to an evaluation log of Inspect, version 2: one sample whose messages are the steps of the run.
 
 use serde_json::{Value, json};
 use time::OffsetDateTime;
@@ -14,14 +14,14 @@ const VERSION: u32 = 2;
 const TASK: &str = "novamind";
 const SCORER: &str = "cash";
 
-/// Returns the name of a run's log as Inspect names its own. Inspect does not list logs in JSON that are named otherwise.
+/// Returns the name of a run's log in Inspect's scheme. Inspect does not list JSON logs with other names.
 pub fn inspect_file_name(manifest: &Manifest) -> String {
-    // The moment in UTC, without the fraction of the second.
+    // Time in UTC, without fractional seconds.
     let created = manifest.created.get(..19).unwrap_or(&manifest.created).replace(':', "-");
     format!("{created}-00-00_{TASK}_{}.json", manifest.id)
 }
 
-/// The run in this format.
+/// Returns the run in this format.
 pub fn inspect(run: &Transcript, told: &Surroundings) -> Value {
     let steps = atif(run, told);
     let steps = steps["steps"].as_array().map(Vec::as_slice).unwrap_or_default();
@@ -74,7 +74,6 @@ pub fn inspect(run: &Transcript, told: &Surroundings) -> Value {
     })
 }
 
-/// How far the run came, as Inspect says it.
 fn status(run: &Transcript) -> &'static str {
     match run.end.as_ref().map(|end| end.reason) {
         None => "started",
@@ -83,7 +82,7 @@ fn status(run: &Transcript) -> &'static str {
     }
 }
 
-/// The score of the sample. Returns `None` for a run that has none: it is unfinished, was given up, or is a lesson's.
+/// Returns the score of the sample. `None` for runs without one: unfinished, abandoned, or in a lesson.
 fn score(run: &Transcript) -> Option<Value> {
     let end = run.end.as_ref()?;
     let explanation = match end.reason {
@@ -93,7 +92,6 @@ fn score(run: &Transcript) -> Option<Value> {
     Some(json!({ "value": end.score?, "explanation": explanation }))
 }
 
-/// A score of the only sample as the result of the evaluation.
 fn result(score: &Value) -> Value {
     json!({
         "name": SCORER,
@@ -104,17 +102,14 @@ fn result(score: &Value) -> Value {
     })
 }
 
-/// A step as messages.
 struct Step {
     at: Option<String>,
-    /// What was said or called.
     message: Value,
-    /// The answer to a call.
     answer: Option<Value>,
 }
 
 impl Step {
-    /// Reads a step of a trajectory. Identifiers are unique among all runs: Inspect's tables drop what occurs twice.
+    /// Reads a step of a trajectory. Identifiers are unique across runs, because Inspect's tables drop duplicates.
     fn of(step: &Value, manifest: &Manifest) -> Step {
         let role = match step["source"].as_str() {
             Some("agent") => "assistant",
@@ -152,9 +147,9 @@ impl Step {
     }
 }
 
-/// The steps as events, from which Inspect makes its tables of messages: one of the model for each step of the player, with the
-/// messages that are new to it, and one of the tool for each call. The last one of the model has no output: its input is what
-/// came back last.
+/// Returns the steps as events, from which Inspect builds its message tables: a model event for each step of the
+/// player, with the messages new to it, and a tool event for each call. The last model event has no output; its input
+/// is the last result.
 fn events(steps: &[Step], created: &str, model: &str) -> Vec<Value> {
     let mut events = Vec::new();
     let (mut input, mut at) = (Vec::new(), created);
@@ -200,7 +195,7 @@ fn events(steps: &[Step], created: &str, model: &str) -> Vec<Value> {
     events
 }
 
-/// Seconds between two moments; 0 if one of them cannot be read.
+/// Returns the seconds between two times; 0 if either cannot be parsed.
 fn seconds(from: &str, to: &str) -> f64 {
     let moment = |text: &str| OffsetDateTime::parse(text, &Rfc3339).ok();
     moment(to).zip(moment(from)).map_or(0.0, |(to, from)| (to - from).as_seconds_f64())

@@ -1,7 +1,8 @@
-//! A run told action by action, in the formats of programs that study or train agents (docs/formats/exports.md).
+//! A run as a sequence of actions, exported to formats of programs that study or train agents
+//! (docs/formats/exports.md).
 //!
-//! The run is played again from its lines, so that every statement is answered with the rows that whoever played was shown:
-//! the record does not keep them. Nothing is told that the player was not told; looks and timings stand apart from it.
+//! The run is replayed from its lines to reproduce the rows of every query, which the record does not contain. The
+//! actions contain only what the player could see. Inspections and timings are kept separately.
 
 mod atif;
 mod inspect;
@@ -29,94 +30,95 @@ use novamind_record::trajectory::{Line, Record};
 use novamind_session::{Goal, Playback, Session, rows_as_json};
 use novamind_tools::{FORECAST_KEYS, Numbers};
 
-/// A run, action by action.
+/// A run as a sequence of actions.
 #[derive(Debug)]
 pub struct Transcript {
-    /// What the run is.
+    /// Manifest of the run.
     pub manifest: Manifest,
-    /// The numbers in force on day 0, as manuals tell them.
+    /// Parameters in force on day 0, as documented in manuals.
     pub numbers: Numbers,
-    /// The dashboard of day 0.
+    /// Dashboard of day 0.
     pub opening: String,
-    /// What was done, in order.
+    /// Actions in order.
     pub acts: Vec<TranscriptAct>,
-    /// What changed nothing: looks, timings, presence, as their lines have it.
+    /// Lines that changed nothing, such as inspections, timings and presence.
     pub asides: Vec<Value>,
-    /// How it ended, if it did.
+    /// End of the run, if it has ended.
     pub end: Option<End>,
-    /// Day and cash of the last state that was recorded.
+    /// Day and cash of the last recorded state.
     pub last: (u32, f64),
     /// Hash of that state.
     pub state_hash: String,
 }
 
-/// Something that was done.
+/// An action with its place.
 #[derive(Debug)]
 pub struct TranscriptAct {
-    /// Number of its line.
+    /// Number of the action's line.
     pub seq: u64,
     /// Day of the run.
     pub day: u32,
-    /// When, RFC 3339.
+    /// Time, RFC 3339.
     pub at: String,
-    /// What.
+    /// The action.
     pub deed: Deed,
 }
 
-/// What was done.
+/// An action of the player.
 #[derive(Debug)]
 pub enum Deed {
-    /// A tool was called.
+    /// A tool call.
     Call {
-        /// Tool, known or not.
+        /// Tool, which can be unknown.
         tool: CalledTool,
         /// Its arguments.
         args: Value,
-        /// What it said.
+        /// Result or rejection.
         answer: Result<Value, RefusalRecord>,
-        /// Through which door, and how long it took.
+        /// Interface and duration.
         extra: Map<String, Value>,
     },
-    /// The database was asked.
+    /// A database query.
     Query {
-        /// Statement.
+        /// SQL statement.
         sql: String,
-        /// Its rows as programs read them, or the code and the words of what was wrong.
+        /// Rows as programs receive them, or error code and message.
         answer: Result<Value, (String, String)>,
-        /// Where the statement came from, and how long it took.
+        /// Source of the statement, and duration.
         extra: Map<String, Value>,
     },
-    /// The notes were kept; none where the record holds no text.
+    /// Saved notes; `None` if the record does not contain the text.
     Note(Option<String>),
-    /// A week was let pass.
+    /// A simulated week.
     Week {
-        /// Why.
+        /// Rationale.
         rationale: String,
-        /// What was expected.
+        /// Forecasts.
         forecasts: Vec<FiledForecast>,
-        /// What came of it; none of a week that did not end.
+        /// Result; `None` if the week did not end.
         passed: Option<PassedWeek>,
     },
-    /// What no program can do over the doors: single days, parameters that were set.
+    /// Actions that no interface for programs offers: single days and changed parameters.
     Debugging(String),
 }
 
-/// What a week came to.
+/// Result of a week.
 #[derive(Debug)]
 pub struct PassedWeek {
-    /// The day it ended on.
+    /// Last day of the week.
     pub day: u32,
-    /// Cash then, dollars.
+    /// Cash on that day, dollars.
     pub cash: f64,
-    /// The dashboard.
+    /// Dashboard on that day.
     pub dashboard: String,
 }
 
 impl Transcript {
-    /// Of the run in a folder, or of a trajectory file. `progress` is told each day that was simulated.
+    /// Reads a run folder or a trajectory file and replays it. `progress` is called with each simulated day.
     ///
     /// # Errors
-    /// The run is missing, damaged, or of another version; the error names the place and what is safe.
+    /// Returns an error if the run is missing, damaged or of another version. The error names the place and what is
+    /// intact.
     pub fn of(path: &Path, progress: &mut dyn FnMut(u32)) -> Result<Transcript, RunError> {
         let mut playback = Playback::open(path)?;
         let lines: Vec<Line> = playback.lines().to_vec();
@@ -153,7 +155,7 @@ impl Transcript {
                 };
                 Deed::Call { tool: call.tool.clone(), args: call.args.clone(), answer, extra }
             }
-            // What a script asked is part of its call.
+            // Queries of a script are part of its call.
             Record::Query(query) if query.via == Some(QuerySource::Script) => {
                 return self.asides.push(told::aside(line));
             }
@@ -186,14 +188,14 @@ impl Transcript {
                 self.end = Some(end.clone());
                 return;
             }
-            // Texts are in what is read of them; how they came about is beside it.
+            // Notes contain the final text; edits are kept separately.
             Record::Activity(_) | Record::Voice(_) => return self.asides.push(told::aside(line)),
             Record::Start(_) | Record::Branch(_) | Record::Unknown(_) => return,
         };
         self.acts.push(TranscriptAct { seq: line.seq, day: line.day, at: line.at.clone(), deed });
     }
 
-    /// What a week came to stands with the act that let it pass.
+    /// Attaches the result of a week to the action that ran it.
     fn close(&mut self, day: u32, cash: f64, state_hash: &str, session: &Session) {
         self.last = (day, cash);
         self.state_hash = state_hash.to_owned();
@@ -207,12 +209,11 @@ impl Transcript {
         }
     }
 
-    /// Who played, as formats name an agent.
     fn player(&self) -> String {
         self.manifest.participant.clone().unwrap_or_else(|| "unnamed player".to_owned())
     }
 
-    /// What the run is and came to, for places that formats leave to others.
+    /// Returns the definition and result of the run, for metadata fields of the formats.
     fn facts(&self) -> Map<String, Value> {
         let own = &self.manifest;
         let all = json!({
@@ -235,7 +236,6 @@ impl Transcript {
     }
 }
 
-/// The forecasts of a week as `next_week` takes them.
 fn predictions(forecasts: &[FiledForecast]) -> Value {
     let one = |(key, filed): (&&str, &FiledForecast)| {
         let said = json!({ "point": filed.point, "lower": filed.lower, "upper": filed.upper });

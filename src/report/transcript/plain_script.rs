@@ -1,4 +1,4 @@
-//! A run as a script of plain mode: the same decisions, played by `novamind play --plain --strict`.
+//! Export to a script of plain mode: the same decisions, replayed by `novamind play --plain --strict`.
 
 use serde_json::{Value, json};
 
@@ -6,7 +6,7 @@ use super::{Deed, Transcript, TranscriptAct, predictions};
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::CalledTool;
 
-/// The script, with the command that plays it in its first lines.
+/// Returns the script, with the command that runs it in the first lines.
 pub fn plain_script(run: &Transcript) -> String {
     let own = &run.manifest;
     let head = format!(
@@ -18,7 +18,7 @@ pub fn plain_script(run: &Transcript) -> String {
         run.last.0,
         run.state_hash,
         new_run(run),
-        // Whoever plays it again is not the one who played it.
+        // The label must not be the original participant's.
         if own.mode == Mode::Baseline { " --participant again" } else { "" },
     );
     let head = head + &judge_in_words(run).map(|words| format!("# {words}\n")).unwrap_or_default();
@@ -26,21 +26,21 @@ pub fn plain_script(run: &Transcript) -> String {
     head + &lines
 }
 
-/// What keeps the run from ending in the same state where it is played again.
+/// Explains why replaying the run may end in a different state.
 pub(super) fn judge_in_words(run: &Transcript) -> Option<&'static str> {
     let is_judged = run.manifest.voice.as_ref().is_some_and(|model| model.judge);
     is_judged.then_some(
-        "A language model judged its posts. The built-in judge reads them here, so the last state can be another.",
+        "A language model judged its posts. This script uses the built-in judge, so the last state can differ.",
     )
 }
 
-/// A refused call as a comment in one line. The name of an unknown tool can hold any characters, so it is escaped.
+/// Writes a rejected call as a comment in one line. Escapes the name of an unknown tool, which can contain any
+/// characters.
 pub(super) fn refused_in_words(tool: &CalledTool, args: &Value, code: &str) -> String {
     let name = tool.known().map_or_else(|| json!(tool.name()).to_string(), |tool| tool.name().to_owned());
     format!("# refused ({code}): {name} {args}")
 }
 
-/// The options of the new run that this one is to be played on.
 pub(super) fn new_run(run: &Transcript) -> String {
     let own = &run.manifest;
     let mut options = format!(
@@ -60,7 +60,6 @@ pub(super) fn new_run(run: &Transcript) -> String {
     options
 }
 
-/// Parameters by their full keys.
 fn collect_parameters(above: &str, table: &toml::Table, all: &mut Vec<(String, String)>) {
     for (key, value) in table {
         let key = if above.is_empty() { key.clone() } else { format!("{above}.{key}") };
@@ -71,7 +70,7 @@ fn collect_parameters(above: &str, table: &toml::Table, all: &mut Vec<(String, S
     }
 }
 
-/// What a deed is in plain mode; nothing of what changes nothing.
+/// Returns the plain-mode line of an action; `None` if it changes nothing.
 fn line(act: &TranscriptAct) -> Option<String> {
     match &act.deed {
         Deed::Call { tool, args, answer: Ok(_), .. } => Some(format!("{tool} {args}")),

@@ -1,4 +1,4 @@
-//! A run as a Python program over the client: the same decisions, played on a run that is served.
+//! Export to a Python program that uses the client: the same decisions on a served run.
 
 use serde_json::{Value, json};
 
@@ -6,10 +6,10 @@ use super::plain_script::{judge_in_words, new_run, refused_in_words};
 use super::{Deed, Transcript, predictions};
 use novamind_record::error::RunError;
 
-/// The program.
+/// Returns the program.
 ///
 /// # Errors
-/// Single days and parameters that were set, which no server offers.
+/// Returns an error if the run has single days or changed parameters, which no server offers.
 pub fn python_script(run: &Transcript) -> Result<String, RunError> {
     let own = &run.manifest;
     let mut text = format!(
@@ -37,7 +37,7 @@ pub fn python_script(run: &Transcript) -> Result<String, RunError> {
             }
             Deed::Debugging(command) => {
                 return Err(RunError::NotPossible(format!(
-                    "day {}: `{command}` is no tool, so no program over the client repeats this run; its plain script \
+                    "day {}: `{command}` is not a tool, so no client program can repeat this run; its plain script \
                      does",
                     act.day
                 )));
@@ -51,14 +51,14 @@ pub fn python_script(run: &Transcript) -> Result<String, RunError> {
     Ok(text)
 }
 
-/// A value as Python writes it.
 fn python(value: &Value) -> String {
     let in_order = |parts: Vec<String>| parts.join(", ");
     match value {
         Value::Null => "None".to_owned(),
         Value::Bool(true) => "True".to_owned(),
         Value::Bool(false) => "False".to_owned(),
-        // JSON's escapes are Python's, but for halves of surrogates: text is escaped as it is, and `/` is not.
+        // JSON escapes are valid in Python except for surrogate pairs, so other text is not escaped. `/` is not
+        // escaped either.
         Value::String(_) | Value::Number(_) => value.to_string(),
         Value::Array(all) => format!("[{}]", in_order(all.iter().map(python).collect())),
         Value::Object(all) => {

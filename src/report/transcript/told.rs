@@ -1,16 +1,16 @@
-//! What stands beside an action: through which door it came, how long it took, what it took back.
+//! Metadata of actions: interface, duration, and undone calls.
 
 use serde_json::{Map, Value, json};
 
 use novamind_record::trajectory::Line;
 use novamind_record::trajectory::record::{QuerySource, Reversal, Via};
 
-/// What whoever plays is told before the first action.
+/// Information that the player receives before the first action.
 #[derive(Debug, Clone, Default)]
 pub struct Surroundings {
-    /// Goal, rules and calls, as text.
+    /// Goal, rules and calls as text.
     pub page: String,
-    /// The tools as functions with the schema of their arguments.
+    /// Tools as functions, with the schema of their arguments.
     pub tools: Vec<Value>,
 }
 
@@ -33,7 +33,6 @@ pub(super) fn reversal(reversal: Option<Reversal>) -> Option<(String, Value)> {
     })
 }
 
-/// A line that changed nothing.
 pub(super) fn aside(line: &Line) -> Value {
     let mut fields = Map::from_iter([
         ("seq".to_owned(), line.seq.into()),

@@ -1,5 +1,5 @@
-//! Words that ask of the hidden state of a run, or set a parameter of it, and what is answered: the same in plain mode and in
-//! the console (docs/debugging.md).
+//! Debug commands that inspect hidden state or change a parameter, with their results, shared by plain mode and the
+//! console (docs/debugging.md).
 
 use serde_json::Value;
 
@@ -11,52 +11,52 @@ use novamind_insight::{Condition, ConditionProblem, Difference, Inspect, Judged,
 use novamind_session::{ChangedParameter, ChangedParameters, Session};
 use novamind_tools::Refusal;
 
-const USAGE_OF_DIFF: &str = "name two days: diff 83 84";
+const USAGE_OF_DIFF: &str = "specify two days: diff 83 84";
 const USAGE_OF_SET: &str =
-    "name a parameter, its value and a day or none: set group.S1.c_max_mean 300 from 30";
+    "specify a parameter, its value and optionally a day: set group.S1.c_max_mean 300 from 30";
 
-/// What is asked.
+/// A parsed debug command.
 #[derive(Debug, Clone, PartialEq)]
 pub enum AskedWords {
     /// `find CONDITION`: the days on which a condition became true.
     Find(Condition),
-    /// `who FIGURE [DAY]`: what wrote a figure on a day, the last one if none is named.
+    /// `who FIGURE [DAY]`: the writes to a figure on a day, the last day by default.
     Who(WriteTarget, Option<u32>),
-    /// `diff DAY DAY`: what differs between the ends of two days.
+    /// `diff DAY DAY`: the differences between the ends of two days.
     Diff(u32, u32),
-    /// `set`: which parameters were set.
+    /// `set`: lists the changed parameters.
     Parameters,
-    /// `set KEY`: a parameter.
+    /// `set KEY`: shows a parameter.
     Parameter(String),
-    /// `set KEY VALUE [from DAY]`: sets one.
+    /// `set KEY VALUE [from DAY]`: changes a parameter.
     Set(String, Value, Option<u32>),
 }
 
-/// What is answered.
+/// Result of a debug command.
 #[derive(Debug, Clone)]
 pub enum WordsFound {
-    /// The days, and the last day that has run.
+    /// The days, and the last simulated day.
     Days(Condition, Vec<Judged>, u32),
     /// The writes.
     Writes(WhoWrites),
-    /// What differs between two days.
+    /// Differences between two days.
     Difference(u32, u32, Difference),
-    /// Which parameters were set.
+    /// Changed parameters.
     Parameters(ChangedParameters),
     /// A parameter and its value.
     Parameter(String, Value),
-    /// What was set, on this day.
+    /// The change, with the current day.
     Set(ChangedParameter, u32),
 }
 
 impl AskedWords {
-    /// The first words that ask.
+    /// First words of the commands.
     pub const FIRST: [&str; 4] = ["find", "who", "diff", "set"];
 
-    /// Reads a line that begins with one of them.
+    /// Parses a line that starts with one of these words.
     ///
     /// # Errors
-    /// What is wrong, and where.
+    /// Returns the problem and its column.
     pub fn read(line: &str) -> Result<AskedWords, Problem> {
         let mut reader = Reader::of(line);
         reader.skip_blanks();
@@ -72,7 +72,7 @@ impl AskedWords {
             other => {
                 let all = AskedWords::FIRST.join(", ");
                 let text = match nearest(other, AskedWords::FIRST.into_iter())[..] {
-                    [] => format!("a line begins with {all}"),
+                    [] => format!("a line must start with {all}"),
                     ref near => format!("{other} is not one of {all}; did you mean {}?", near.join(" or ")),
                 };
                 Err(Problem { text, column: begin })
@@ -80,27 +80,27 @@ impl AskedWords {
         }
     }
 
-    /// Reads what follows `find`; it begins in a column.
+    /// Parses the arguments of `find`, which start at `column`.
     ///
     /// # Errors
-    /// What is wrong, and where.
+    /// Returns the problem and its column.
     pub fn find(rest: &str, column: usize) -> Result<AskedWords, Problem> {
         rest.parse().map(AskedWords::Find).map_err(|problem| in_line(problem, column))
     }
 
-    /// Reads what follows `who`.
+    /// Parses the arguments of `who`.
     ///
     /// # Errors
-    /// What is wrong, and where.
+    /// Returns the problem and its column.
     pub fn who(rest: &str, column: usize) -> Result<AskedWords, Problem> {
         let read = WriteTarget::parse_with_day(rest);
         read.map(|(target, day)| AskedWords::Who(target, day)).map_err(|problem| in_line(problem, column))
     }
 
-    /// Reads the arguments of `diff`.
+    /// Parses the arguments of `diff`.
     ///
     /// # Errors
-    /// What is wrong, and where.
+    /// Returns the problem and its column.
     pub fn diff(arguments: &[Argument]) -> Result<AskedWords, Problem> {
         let days: Vec<u32> = arguments.iter().map(Argument::whole_number).collect::<Result<_, _>>()?;
         match days[..] {
@@ -109,10 +109,10 @@ impl AskedWords {
         }
     }
 
-    /// Reads the arguments of `set`.
+    /// Parses the arguments of `set`.
     ///
     /// # Errors
-    /// What is wrong, and where.
+    /// Returns the problem and its column.
     pub fn set(arguments: &[Argument]) -> Result<AskedWords, Problem> {
         let usage = || Problem::of(arguments, USAGE_OF_SET);
         let (key, value, rest) = match arguments {
@@ -138,19 +138,19 @@ impl AskedWords {
         let number = day.value.as_u64().and_then(|number| u32::try_from(number).ok());
         match number {
             Some(number) => Ok(AskedWords::Set(key.clone(), value.clone(), Some(number))),
-            None => Err(Problem { text: "a day is a whole number".to_owned(), column: day.column }),
+            None => Err(Problem { text: "the day must be a whole number".to_owned(), column: day.column }),
         }
     }
 
-    /// Whether the run is another one afterwards.
+    /// Returns whether the command changes the run.
     pub fn changes_run(&self) -> bool {
         matches!(self, AskedWords::Set(..))
     }
 
-    /// Refuses where it may not be asked, whatever follows the first word.
+    /// Rejects a command that the run does not permit, whatever its arguments.
     ///
     /// # Errors
-    /// `not_in_this_mode`.
+    /// Returns `not_in_this_mode`.
     pub fn refuse(word: &str, session: &Session) -> Result<(), Refusal> {
         if word == "set" {
             session.company().debug_parameters().map(drop)
@@ -159,10 +159,10 @@ impl AskedWords {
         }
     }
 
-    /// Answers. A look is recorded, and so is what is set.
+    /// Executes the command. Inspections and changes are recorded.
     ///
     /// # Errors
-    /// Those of [`Inspector::find_days`], [`Inspector::who_writes`], [`Inspector::difference_of_days`],
+    /// Returns those of [`Inspector::find_days`], [`Inspector::who_writes`], [`Inspector::difference_of_days`],
     /// [`CompanyView::debug_parameters`] and [`Session::set_parameter`].
     ///
     /// [`CompanyView::debug_parameters`]: novamind_session::CompanyView::debug_parameters
@@ -199,7 +199,7 @@ impl AskedWords {
 }
 
 impl WordsFound {
-    /// The answer in words.
+    /// Returns the result as lines of text.
     pub fn in_words(&self) -> Vec<String> {
         match self {
             WordsFound::Days(condition, found, last) => found_in_words(condition, found, *last),
@@ -212,7 +212,7 @@ impl WordsFound {
     }
 }
 
-/// A problem of the rest of a line, in the columns of the line.
+/// Shifts the column of a problem to its position in the line.
 fn in_line(problem: ConditionProblem, column: usize) -> Problem {
     Problem { text: problem.message, column: column + problem.column - 1 }
 }
@@ -244,7 +244,7 @@ mod tests {
     #[test]
     fn what_cannot_be_read_names_the_column() {
         for (line, column, part) in [
-            ("", 1, "a line begins with find"),
+            ("", 1, "a line must start with find"),
             ("fond x", 1, "did you mean find?"),
             ("find leads >", 13, ""),
             ("who nobody", 5, ""),

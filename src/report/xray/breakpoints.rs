@@ -1,4 +1,4 @@
-//! Conditions, why a run stopped, and since when they hold, in words.
+//! Text for breakpoints: conditions, why a run stopped, and since when a condition is true.
 
 use super::settled;
 use crate::words::count;
@@ -7,20 +7,18 @@ use novamind_insight::{
     Breakpoint, Condition, Direction, Hit, Judged, LookBack, Relation, RunUntil, TrueBefore,
 };
 
-/// Decimals that a figure is written with at least.
 const DECIMALS: usize = 4;
-/// Decimals at most, where fewer would not tell two numbers apart.
 const MOST_DECIMALS: usize = 12;
 
-/// The breakpoints that are set, one in a line.
+/// Lists the breakpoints, one per line.
 pub fn breakpoints_in_words(set: &[Breakpoint]) -> Vec<String> {
     match set.is_empty() {
-        true => vec!["no breakpoint is set; for instance: break churn(S1) > 0.05 over 7".to_owned()],
+        true => vec!["no breakpoint is set; example: break churn(S1) > 0.05 over 7".to_owned()],
         false => set.iter().map(|own| format!("{}  {}", own.number, own.condition)).collect(),
     }
 }
 
-/// Why days stopped: each breakpoint that became true with both sides, or that none did.
+/// Explains why a run stopped: each breakpoint that became true, with both sides, or that none did.
 pub fn stop_in_words(run: &RunUntil, day: u32, breakpoints: usize) -> Vec<String> {
     let hit = |hit: &Hit| {
         let Hit { breakpoint, judged } = hit;
@@ -36,13 +34,15 @@ pub fn stop_in_words(run: &RunUntil, day: u32, breakpoints: usize) -> Vec<String
         (false, _) => return settled(run.hits.iter().map(hit).collect()),
         (true, 0) => vec![format!("{ran}; no breakpoint is set")],
         (true, 1) if run.true_before.is_empty() => {
-            vec![format!("{ran}; the breakpoint was true on none of them")]
+            vec![format!("{ran}; the breakpoint was never true")]
         }
         (true, count) if run.true_before.is_empty() => {
-            vec![format!("{ran}; none of the {count} breakpoints was true on any of them")]
+            vec![format!("{ran}; none of the {count} breakpoints was ever true")]
         }
         (true, 1) if run.true_before.iter().all(|own| own.began.is_some()) => {
-            vec![format!("{ran}; the breakpoint did not become true: its figure began so")]
+            vec![format!(
+                "{ran}; the breakpoint did not become true: it was true at its figure's first value"
+            )]
         }
         (true, 1) => vec![format!("{ran}; the breakpoint did not become true: it was true before")],
         (true, count) => vec![format!("{ran}; none of the {count} breakpoints became true")],
@@ -54,24 +54,24 @@ pub fn stop_in_words(run: &RunUntil, day: u32, breakpoints: usize) -> Vec<String
 fn true_before(own: &TrueBefore, day: u32) -> String {
     let Hit { breakpoint, judged } = &own.hit;
     let until = match (own.until == day, own.began) {
-        (true, None) => "true on all these days and the day before them".to_owned(),
+        (true, None) => "true on all these days and on the day before".to_owned(),
         (false, None) => format!("true until day {}", own.until),
-        (true, Some(began)) => format!("true from day {began} on, on which its figure has a value first"),
+        (true, Some(began)) => format!("true from day {began}, its figure's first value"),
         (false, Some(began)) => {
-            format!("true from day {began}, on which its figure has a value first, until day {}", own.until)
+            format!("true from day {began}, its figure's first value, until day {}", own.until)
         }
     };
     format!("breakpoint {} was {until}: {}", breakpoint.number, sides(&breakpoint.condition, judged))
 }
 
-/// Since when a condition is what it is today, with both sides of the change.
+/// Describes since when a condition has its current value, with both sides of the change.
 pub fn look_back_in_words(own: &LookBack) -> Vec<String> {
     let LookBack { condition, today, last_true, last_false } = own;
     let is = if today.is_true { "true" } else { "false" };
     let mut lines = vec![format!("{condition} is {is} on day {}: {}", today.day, sides(condition, today))];
     lines.push(match if today.is_true { last_false } else { last_true } {
         None if today.is_true => "it was true on every day".to_owned(),
-        None => "it was true on no day".to_owned(),
+        None => "it was never true".to_owned(),
         Some(other) => format!(
             "last {} on day {}: {}; {is} since day {}",
             if today.is_true { "false" } else { "true" },
@@ -83,7 +83,7 @@ pub fn look_back_in_words(own: &LookBack) -> Vec<String> {
     settled(lines)
 }
 
-/// The days on which a condition became true, and those on which its figure began so.
+/// Lists the days on which a condition became true, marking first values of its figure.
 pub fn found_in_words(condition: &Condition, found: &[Judged], last_day: u32) -> Vec<String> {
     let days = count(last_day, "day");
     let head = match found.iter().filter(|own| own.becomes_true()).count() {
@@ -97,7 +97,8 @@ pub fn found_in_words(condition: &Condition, found: &[Judged], last_day: u32) ->
     settled(std::iter::once(head).chain(found.iter().map(line)).collect())
 }
 
-/// Both sides in numbers: `churn(S1) over 7 = 0.0523 > 0.05 (day before 0.0481)`. A comparison that does not hold says so.
+/// Formats both sides: `churn(S1) over 7 = 0.0523 > 0.05 (day before 0.0481)`. If the comparison is false, shows the
+/// opposite sign.
 fn sides(condition: &Condition, judged: &Judged) -> String {
     let value =
         |value: Option<f64>, others: &[f64]| value.map_or("no value".to_owned(), |own| told(own, others));
@@ -139,7 +140,7 @@ fn opposite(relation: Relation) -> &'static str {
     }
 }
 
-/// A number with as few decimals as tell it from others; whole numbers without any.
+/// Formats a number with as few decimals as distinguish it from others; whole numbers without any.
 fn told(value: f64, others: &[f64]) -> String {
     if value.fract() == 0.0 && value.abs() < 1e15 {
         return format!("{value:.0}");

@@ -1,14 +1,14 @@
-//! A company from within, in words.
+//! Text for the inspection of an enterprise.
 
 use super::{settled, table};
 use novamind_insight::{CompanyDay, CompanyLens};
 use novamind_session::CompanyAnswer;
 use novamind_session::identifiers::Plan;
 
-/// Its open threads on the day that is shown: what it perceives, what it accepts, what it would answer.
+/// Describes its open threads on a day: perceived quality, acceptance limits and the answer it would give.
 pub fn company_in_words(lens: &CompanyLens) -> Vec<String> {
     let CompanyLens { customer, group, day, days } = lens;
-    let mut lines = vec![format!("company {customer} · {group} · day {day}")];
+    let mut lines = vec![format!("enterprise {customer} · {group} · day {day}")];
     let before = lines.len();
     lens.shown().for_each(|own| lines.extend(thread_in_words(own)));
     if lines.len() == before {
@@ -30,10 +30,10 @@ fn thread_in_words(own: &CompanyDay) -> Vec<String> {
         own.relationship,
         match own.late_penalty {
             0.0 => String::new(),
-            penalty => format!(", {penalty:+.4} if the late answer came today"),
+            penalty => format!(", {penalty:+.4} if the late answer arrives today"),
         }
     )];
-    let head = ["plan", "quality", "if answered today", "accepts", "would name"];
+    let head = ["plan", "quality", "if answered today", "accepts", "counteroffer"];
     let row = |plan: Plan| {
         let judged = own.plans[plan];
         vec![
@@ -44,7 +44,7 @@ fn thread_in_words(own: &CompanyDay) -> Vec<String> {
                 true => "any price".to_owned(),
                 false => format!("below {:.2}", judged.accepts_below),
             },
-            if judged.counter > 0.0 { format!("{:.2}", judged.counter) } else { "nothing".to_owned() },
+            if judged.counter > 0.0 { format!("{:.2}", judged.counter) } else { "none".to_owned() },
         ]
     };
     lines.extend(table(&head, &Plan::ALL.map(row)));
@@ -68,7 +68,7 @@ fn in_words(answer: &CompanyAnswer, own: &CompanyDay) -> String {
     let plan = |at: usize| own.offerings.get(at).map_or("", |offering| offering.plan.id());
     match answer {
         CompanyAnswer::Accept(at) => format!("accepts plan {}", plan(*at)),
-        CompanyAnswer::Counter(at, price) => format!("names {price:.2} for plan {}", plan(*at)),
-        CompanyAnswer::Silence => "silence".to_owned(),
+        CompanyAnswer::Counter(at, price) => format!("counters with {price:.2} for plan {}", plan(*at)),
+        CompanyAnswer::Silence => "no answer".to_owned(),
     }
 }

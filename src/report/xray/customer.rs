@@ -1,20 +1,20 @@
-//! An individual from within, in words: what it decided and why, term by term.
+//! Text for the inspection of an individual: its decisions and their terms.
 
 use super::{settled, table};
 use novamind_insight::{CustomerLens, DayOutcome, FirstDecision, Term, TurningTerm, Weighed};
 use novamind_session::EndCause;
 use novamind_session::identifiers::Plan;
 
-/// How the line begins that lists satisfaction.
+/// Start of the line that lists satisfaction.
 pub const SATISFACTION: &str = "satisfaction:";
 
-/// Days between two values of the satisfaction that is listed.
+/// Interval between listed satisfaction values, days.
 const LISTED_DAYS: usize = 7;
 
-/// The headline, the curve, the plans today and at the last bill, satisfaction, events.
+/// Describes the headline, curve, plans today and at the last bill, satisfaction and events.
 pub fn customer_in_words(lens: &CustomerLens) -> Vec<String> {
     let first = &lens.first;
-    let came = format!("came on day {} by {}", first.day, first.source.id());
+    let came = format!("arrived on day {} through {}", first.day, first.source.id());
     let mut lines = vec![format!("customer {} · {} · {came}", lens.customer, lens.group), headline(lens)];
     let Some(shown) = lens.shown() else {
         lines.extend(first_in_words(first));
@@ -25,7 +25,7 @@ pub fn customer_in_words(lens: &CustomerLens) -> Vec<String> {
         "curve on day {}: budget {:.2}, quality {:.4} to {:.4}, steepness {:.2} and {:.2}",
         shown.day, curve.c_max, curve.q_min, curve.q_max, curve.steepness_left, curve.steepness_right
     ));
-    lines.push(format!("plans on day {}, * its own:", shown.day));
+    lines.push(format!("plans on day {}, * current:", shown.day));
     lines.extend(plans(&shown.weighed, shown.plan));
     if let Some(bill) = lens.last_bill() {
         lines.push(format!("plans at the last bill, day {}:", bill.day));
@@ -36,30 +36,33 @@ pub fn customer_in_words(lens: &CustomerLens) -> Vec<String> {
     settled(lines)
 }
 
-/// What became of it on the day that is shown, and what would have turned it.
+/// Describes the outcome of a day and the terms that would have changed it.
 fn headline(lens: &CustomerLens) -> String {
     let Some(shown) = lens.shown() else { return first_headline(lens) };
     let Weighed { choice, plans, turning, .. } = &shown.weighed;
     let day = shown.day;
     match (shown.outcome, choice) {
         (DayOutcome::Leaves(EndCause::Involuntary), _) => format!(
-            "left on day {day}: the payment failed, with a chance of {:.2} % on that day",
+            "cancelled on day {day}: the payment failed, with a chance of {:.2} % on that day",
             shown.payment_failure * 100.0
         ),
         (DayOutcome::Leaves(_), _) => {
-            format!("left on day {day}: no plan clears; {}", would_have_stayed(turning, lens))
+            format!("cancelled on day {day}: no plan is acceptable; {}", would_have_stayed(turning, lens))
         }
         (_, None) => {
-            format!("day {day} is no billing day; no plan would clear: {}", would_have_stayed(turning, lens))
+            format!(
+                "day {day} is not a billing day; no plan would be acceptable: {}",
+                would_have_stayed(turning, lens)
+            )
         }
         (outcome, Some(best)) => {
             let what = match outcome {
                 DayOutcome::Switches(plan) => format!("switched to plan {plan} on day {day}"),
                 _ if shown.is_due => format!("stayed on plan {} on day {day}", shown.plan),
-                _ => format!("is on plan {} on day {day}, no billing day", shown.plan),
+                _ => format!("on plan {} on day {day}, not a billing day", shown.plan),
             };
             format!(
-                "{what}: plan {best} clears best, by {:.4}; {}",
+                "{what}: plan {best} has the largest surplus, {:.4}; {}",
                 plans[*best].surplus,
                 would_leave(turning, lens)
             )
@@ -70,19 +73,19 @@ fn headline(lens: &CustomerLens) -> String {
 fn would_have_stayed(turning: &[TurningTerm], lens: &CustomerLens) -> String {
     let turned = |without: &TurningTerm| {
         let (plan, surplus) = without.plan?;
-        Some(format!("without {} plan {plan} would, by {surplus:.4}", term_in_words(without.term, lens)))
+        Some(format!("without {}, plan {plan} would be, by {surplus:.4}", term_in_words(without.term, lens)))
     };
     match turning.iter().find_map(turned) {
         Some(text) => text,
-        None => "no single term makes the difference".to_owned(),
+        None => "no single term is decisive".to_owned(),
     }
 }
 
 fn would_leave(turning: &[TurningTerm], lens: &CustomerLens) -> String {
     let terms: Vec<String> = turning.iter().map(|without| term_in_words(without.term, lens)).collect();
     match terms.is_empty() {
-        true => "no single term makes the difference".to_owned(),
-        false => format!("no plan would without {}", terms.join(", or without ")),
+        true => "no single term is decisive".to_owned(),
+        false => format!("no plan would be acceptable without {}", terms.join(", or without ")),
     }
 }
 
@@ -93,18 +96,17 @@ fn term_in_words(term: Term, lens: &CustomerLens) -> String {
             None => "an issue".to_owned(),
         },
         Term::Ads => "ads".to_owned(),
-        Term::Quota => "the limit of the quota".to_owned(),
+        Term::Quota => "the quota limit".to_owned(),
         Term::Relationship => "the relationship".to_owned(),
         Term::Tenure => "tenure".to_owned(),
         Term::Service => "today's service".to_owned(),
         Term::Expectations => "the market's expectations".to_owned(),
-        Term::Budgets => "the drift of budgets".to_owned(),
+        Term::Budgets => "budget drift".to_owned(),
         Term::Economy => "the economy".to_owned(),
-        Term::Prices => "the change of prices since the last bill".to_owned(),
+        Term::Prices => "price changes since the last bill".to_owned(),
     }
 }
 
-/// A row for each plan.
 fn plans(weighed: &Weighed, own: Plan) -> Vec<String> {
     let head = [
         "plan",
@@ -136,7 +138,7 @@ fn plans(weighed: &Weighed, own: Plan) -> Vec<String> {
             number(terms.quality),
             number(terms.required),
             number(terms.surplus),
-            if terms.within_budget { String::new() } else { "above the budget".to_owned() },
+            if terms.within_budget { String::new() } else { "above budget".to_owned() },
         ]
     };
     table(&head, &Plan::ALL.map(row))
@@ -156,7 +158,7 @@ fn first_headline(lens: &CustomerLens) -> String {
         true => format!("misses by {:.4} with noise {noise:.4}", own.required - seen),
         false => format!("costs {:.2}, and the budget is {:.2}", own.offered.price, curve.c_max),
     };
-    format!("did not sign up on day {day}: plan {plan}, the one it looked at, {missing}")
+    format!("did not sign up on day {day}: plan {plan}, which it considered, {missing}")
 }
 
 fn first_in_words(first: &FirstDecision) -> Vec<String> {
@@ -169,7 +171,7 @@ fn first_in_words(first: &FirstDecision) -> Vec<String> {
             format!("{:.4}", own.offered.quality),
             format!("{:.4}", own.offered.quality * first.noise),
             format!("{:.4}", own.required),
-            if own.offered.price <= curve.c_max { String::new() } else { "above the budget".to_owned() },
+            if own.offered.price <= curve.c_max { String::new() } else { "above budget".to_owned() },
         ]
     };
     let mut lines = vec![format!(
@@ -180,7 +182,7 @@ fn first_in_words(first: &FirstDecision) -> Vec<String> {
     lines
 }
 
-/// Satisfaction of every seventh day back from the one that is shown.
+/// Lists satisfaction every seventh day, back from the inspected day.
 fn satisfaction(lens: &CustomerLens) -> String {
     let listed = lens.days.iter().rev().step_by(LISTED_DAYS).take(12);
     let mut listed: Vec<String> =
@@ -189,7 +191,6 @@ fn satisfaction(lens: &CustomerLens) -> String {
     format!("{SATISFACTION} {}", listed.join(", "))
 }
 
-/// What happened to it, day by day.
 fn events(lens: &CustomerLens) -> Vec<String> {
     let first = &lens.first;
     let mut lines = vec![format!("day {}: signed up for plan {}", first.day, first.plan)];
@@ -197,17 +198,17 @@ fn events(lens: &CustomerLens) -> Vec<String> {
     for own in &lens.days {
         let is_new = own.open_issue_days > 0 && (waited == 0 || own.open_issue_days <= waited);
         if waited > 0 && (own.open_issue_days == 0 || is_new) {
-            lines.push(format!("day {}: the issue is solved", own.day));
+            lines.push(format!("day {}: the issue was resolved", own.day));
         }
         if is_new {
-            lines.push(format!("day {}: an issue opens", own.day));
+            lines.push(format!("day {}: an issue was opened", own.day));
         }
         waited = own.open_issue_days;
         match own.outcome {
             DayOutcome::Leaves(EndCause::Involuntary) => {
                 lines.push(format!("day {}: the payment failed", own.day))
             }
-            DayOutcome::Leaves(_) => lines.push(format!("day {}: left", own.day)),
+            DayOutcome::Leaves(_) => lines.push(format!("day {}: cancelled", own.day)),
             DayOutcome::Switches(plan) => lines.push(format!("day {}: switched to plan {plan}", own.day)),
             DayOutcome::Stays if own.is_due => lines.push(format!("day {}: stayed", own.day)),
             DayOutcome::Stays => {}

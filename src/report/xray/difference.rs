@@ -1,4 +1,4 @@
-//! What differs between two days, or between two runs on a day, in words.
+//! Text for differences between two days or between two runs on a day.
 
 use serde_json::{Value, json};
 
@@ -6,45 +6,43 @@ use super::table;
 use novamind_base::notation::grouped;
 use novamind_insight::{CustomerDifference, Difference, RunDifference};
 
-/// Figures that are told; a state has some hundred.
 const FIGURES_TOLD: usize = 40;
-/// Decimals of a figure at least, and those of one of a thousand and more.
+/// Minimum number of decimals of a figure, and of one of at least a thousand.
 const DECIMALS: usize = 4;
 const DECIMALS_OF_LARGE: usize = 2;
-/// Decimals at most, where fewer would not tell two numbers apart.
+/// Maximum number of decimals, used to distinguish close numbers.
 const MOST_DECIMALS: usize = 12;
-/// Parameters that are told.
 const PARAMETERS_TOLD: usize = 20;
 
-/// What differs between two days of a run.
+/// Describes the differences between two days of a run.
 pub fn days_in_words(found: &Difference, (one, other): (u32, u32)) -> Vec<String> {
     difference_in_words(found, (&format!("day {one}"), &format!("day {other}")), "on")
 }
 
-/// What differs between two states that are called so; before a name stands `on` or `in`.
+/// Describes the differences between two named states. `before` is the preposition of the names: `on` or `in`.
 fn difference_in_words(found: &Difference, names: (&str, &str), before: &str) -> Vec<String> {
     if found.is_none() {
-        return vec!["nothing differs".to_owned()];
+        return vec!["no differences".to_owned()];
     }
     let mut lines = parameters(found, names);
     if found.parts.is_empty() {
-        lines.push("parts of the state are alike".to_owned());
+        lines.push("all parts of the state are equal".to_owned());
         return lines;
     }
     lines.push(format!("differs: {}", found.parts.join(", ")));
     if !found.alike.is_empty() {
-        lines.push(format!("alike: {}", found.alike.join(", ")));
+        lines.push(format!("equal: {}", found.alike.join(", ")));
     }
     lines.extend(figures(found, names));
     lines.extend(customers(found, names, before));
     lines
 }
 
-/// What differs between two runs that are called so.
+/// Describes the differences between two named runs.
 pub fn runs_in_words(found: &RunDifference, names: (&str, &str)) -> Vec<String> {
     let mut lines = vec![match found.first_day {
-        None => format!("the runs are alike on every day up to day {}", found.last_day),
-        Some(day) => format!("the runs differ from day {day} on"),
+        None => format!("the runs are identical up to day {}", found.last_day),
+        Some(day) => format!("the runs differ from day {day}"),
     }];
     if let Some(difference) = &found.difference {
         lines.push(format!("day {}", difference.days.0));
@@ -53,7 +51,7 @@ pub fn runs_in_words(found: &RunDifference, names: (&str, &str)) -> Vec<String> 
     lines
 }
 
-/// The same for programs.
+/// Returns the differences as JSON.
 pub fn difference_as_data(found: &Difference) -> Value {
     let figure = |(name, own, other): &(String, f64, f64)| json!({ "figure": name, "values": [own, other] });
     let customer = |own: &CustomerDifference| {
@@ -79,7 +77,6 @@ pub fn difference_as_data(found: &Difference) -> Value {
     })
 }
 
-/// Parameters that differ.
 fn parameters(found: &Difference, names: (&str, &str)) -> Vec<String> {
     let row =
         |(key, own, other): &(String, Value, Value)| vec![key.clone(), own.to_string(), other.to_string()];
@@ -99,7 +96,7 @@ fn figures(found: &Difference, names: (&str, &str)) -> Vec<String> {
     };
     let rows: Vec<Vec<String>> = found.figures.iter().take(FIGURES_TOLD).map(row).collect();
     if rows.is_empty() {
-        return vec!["figures are alike".to_owned()];
+        return vec!["figures are equal".to_owned()];
     }
     let mut lines = table(&["figure", names.0, names.1], &rows);
     let more = found.figures.len().saturating_sub(FIGURES_TOLD);
@@ -136,7 +133,7 @@ fn customer(own: &CustomerDifference, names: (&str, &str), before: &str) -> Stri
     format!("  {} {}: {what}", own.customer, own.group)
 }
 
-/// A number with as few decimals as tell it from another.
+/// Formats a number with as few decimals as distinguish it from another.
 fn told_apart(value: f64, other: f64) -> String {
     if value.fract() == 0.0 {
         return grouped(value, 0);
@@ -149,7 +146,7 @@ fn told_apart(value: f64, other: f64) -> String {
     }
 }
 
-/// The same of two cells, as far as they are numbers with a fraction.
+/// Formats two cells likewise if they are numbers with a fraction.
 fn cells_apart(one: &str, other: &str) -> (String, String) {
     let number = |cell: &str| cell.parse::<f64>().ok().filter(|value| value.is_finite());
     match (number(one), number(other)) {
@@ -189,7 +186,7 @@ mod tests {
                 "  parameter                    one   other",
                 "  operations.base_outage_prob  0.01  0.5",
                 "differs: money, customers",
-                "alike: market",
+                "equal: market",
                 "  figure  one    other",
                 "  cash    1,000  999.5000",
                 "customers: 1 differ, 1 subscribe only in one, 0 only in other",
@@ -201,6 +198,6 @@ mod tests {
         assert_eq!(of_days[6], "customers: 1 differ, 1 subscribe only on day 3, 0 only on day 300");
         assert_eq!(of_days[8], "  9 S1: subscribes only on day 3");
         let alike = RunDifference { last_day: 28, first_day: None, difference: None };
-        assert_eq!(runs_in_words(&alike, ("a", "b")), ["the runs are alike on every day up to day 28"]);
+        assert_eq!(runs_in_words(&alike, ("a", "b")), ["the runs are identical up to day 28"]);
     }
 }

@@ -1,14 +1,14 @@
-//! The equation of a group's leads, in words.
+//! Text for the equation of a group's leads.
 
 use super::settled;
 use novamind_insight::{LeadEquation, LeadFactor};
 
-/// Place of the line that tells of a factor among the words of an equation.
+/// Returns the index of a factor's line in [`leads_in_words`].
 pub fn line_of_factor(factor: LeadFactor) -> usize {
     2 + factor as usize
 }
 
-/// The equation of the last of some days, each factor with its range over all of them, and λ where factors are held.
+/// Describes the equation of the last day, each factor with its range over all days, and λ with factors held fixed.
 pub fn leads_in_words(days: &[LeadEquation], held: &[(LeadFactor, f64)]) -> Vec<String> {
     let Some(own) = days.last() else { return Vec::new() };
     let mut lines = vec![format!("leads of {} on day {}", own.group, own.day)];
@@ -19,38 +19,35 @@ pub fn leads_in_words(days: &[LeadEquation], held: &[(LeadFactor, f64)]) -> Vec<
     lines.push(equation(own));
     lines.extend(LeadFactor::ALL.map(|factor| over_days(days, factor)));
     if own.is_without_limit {
-        lines.push(
-            "  D is 1 however many subscribe: base_market_cap is 0, and a market without a size has no limit"
-                .to_owned(),
-        );
+        lines.push("  D is always 1: base_market_cap is 0, so the market has no size limit".to_owned());
     }
     let by_group = own.word_of_mouth.iter().map(|(group, leads)| format!("{group} {leads:.3}"));
     let by_group: Vec<String> = by_group.collect();
     lines.push(match by_group.is_empty() {
-        true => "  word of mouth from nobody: there are no subscribers".to_owned(),
+        true => "  no word of mouth: there are no subscribers".to_owned(),
         false => format!("  word of mouth from {}", by_group.join(" + ")),
     });
     if !held.is_empty() {
         let held_at: Vec<String> = held.iter().map(|(factor, value)| format!("{factor} {value}")).collect();
         let with = own.holding(held);
-        lines.push(format!("with {}: λ {with:.2} instead of {:.2}", held_at.join(", "), own.expected()));
+        lines.push(format!("with {}: λ {with:.2} rather than {:.2}", held_at.join(", "), own.expected()));
     }
     lines.push(format!(
-        "  p {:.2}: the share of draws around λ that are as far from it as {}, or farther",
+        "  p {:.2}: the share of draws around λ that are at least as far from it as {}",
         own.p_value(),
         own.came
     ));
     settled(lines)
 }
 
-/// `R 0.50 × … × (search_ads 5.0 + word of mouth 12.4) = λ 98.3, came 104 (p 0.56)`
+/// Formats `R 0.50 × … × (search_ads 5.0 + word of mouth 12.4) = λ 98.3, actual 104 (p 0.56)`.
 fn equation(own: &LeadEquation) -> String {
     let factors = LeadFactor::ALL.map(|factor| format!("{factor} {:.4}", own.factor(factor)));
     let mut sources: Vec<String> =
         own.channels().map(|(channel, leads)| format!("{} {leads:.2}", channel.id())).collect();
     sources.push(format!("word of mouth {:.2}", own.by_word_of_mouth()));
     format!(
-        "  {} × ({}) = λ {:.2}, came {} (p {:.2})",
+        "  {} × ({}) = λ {:.2}, actual {} (p {:.2})",
         factors.join(" × "),
         sources.join(" + "),
         own.expected(),

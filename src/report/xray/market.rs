@@ -1,16 +1,15 @@
-//! Rivals and drift, in words.
+//! Text for the inspection of competitors and drift.
 
 use super::{settled, table};
 use novamind_insight::{DriftState, GroupDrifted, NextRivalMove, RivalState};
 
-/// Moves that are listed.
 const LISTED_MOVES: usize = 10;
 
-/// What rivals could copy, what they did, and the move that is decided next.
+/// Describes what competitors could copy, their moves so far, and the next move.
 pub fn rivals_in_words(own: &RivalState) -> Vec<String> {
     let RivalState { day, shared_bonus, shared_bank, everyone, .. } = own;
     let mut lines = vec![
-        format!("rivals on the evening of day {day}"),
+        format!("competitors at the end of day {day}"),
         format!("  shared improvements {shared_bonus:.4}, not copied {shared_bank:.4}"),
     ];
     let banks = own
@@ -21,11 +20,12 @@ pub fn rivals_in_words(own: &RivalState) -> Vec<String> {
     if !banks.is_empty() {
         lines.extend(table(&["group", "own improvements", "not copied"], &banks));
     }
-    lines.push(format!("  rivals and drift have added {everyone:+.4} to everyone's expectations"));
+    lines
+        .push(format!("  competitors and drift have added {everyone:+.4} to the expectations of all groups"));
     lines.extend(moves(own));
     lines.extend(match &own.next {
         Some(next) => next_move(next, own),
-        None => vec!["  no move is to come before the end of the run".to_owned()],
+        None => vec!["  no further move before the end of the run".to_owned()],
     });
     settled(lines)
 }
@@ -60,13 +60,13 @@ fn moves(own: &RivalState) -> Vec<String> {
 fn next_move(next: &NextRivalMove, own: &RivalState) -> Vec<String> {
     let NextRivalMove { day, sampled, u, made, .. } = next;
     let mut lines = vec![format!(
-        "  next move on day {day}: drawn size {sampled:.4}, or {:.1} % of the shared bank if that is more: of today's bank {:.4}",
+        "  next move on day {day}: drawn size {sampled:.4}, or {:.1} % of the shared bank if larger: {:.4} of today's bank",
         u * 100.0,
         next.copied(own.shared_bank)
     )];
     lines.push(match made {
         Some(made) if made.by_feedback => {
-            format!("  it copied, and raised expectations by {:.4}", made.boost)
+            format!("  it copied and raised expectations by {:.4}", made.boost)
         }
         Some(made) => format!("  the drawn size applied: expectations rose by {:.4}", made.boost),
         None => format!("  they copy if the bank is above {:.4} on that day", next.copies_above()),
@@ -81,19 +81,19 @@ fn next_move(next: &NextRivalMove, own: &RivalState) -> Vec<String> {
     lines
 }
 
-/// What the market has added to expectations and budgets, and what the next application of drift adds.
+/// Describes what the market has added to expectations and budgets, and what the next drift adds.
 pub fn drift_in_words(own: &DriftState) -> Vec<String> {
     let DriftState { day, everyone, step, next_day, groups } = own;
     let mut lines = vec![
-        format!("expectations and budgets on the evening of day {day}"),
+        format!("expectations and budgets at the end of day {day}"),
         match next_day {
             Some(next) => {
-                format!("  next drift on day {next}: it adds {step:+.6} to everyone's expectations")
+                format!("  next drift on day {next}: it adds {step:+.6} to the expectations of all groups")
             }
-            None => "  no drift is to come before the end of the run".to_owned(),
+            None => "  no further drift before the end of the run".to_owned(),
         },
     ];
-    let mut head = vec!["group", "everyone", "own", "expects more", "pays more, $"];
+    let mut head = vec!["group", "all groups", "own", "expects more", "pays more, $"];
     if next_day.is_some() {
         head.extend(["next drift: expects", "pays, $"]);
     }

@@ -1,4 +1,4 @@
-//! What the x-ray shows, in words: the same lines for plain mode and for the console.
+//! Text for inspections of hidden state, shared by plain mode and the console.
 
 mod asked;
 mod breakpoints;
@@ -32,10 +32,10 @@ pub use writes::{writes_in_words, written_by};
 use self::settled::{settle, settled};
 use crate::words::count;
 
-/// How the line begins that tells of the last evenings of a group.
-pub const EVENINGS: &str = "  evenings of the last";
+/// Start of the line about the last days of a group.
+pub const EVENINGS: &str = "  end of day, last";
 
-/// Between which values a figure of evenings lay; none without any.
+/// Describes the range of a figure over some days; `None` without values.
 fn evenings_in_words(values: impl Iterator<Item = f64> + Clone) -> Option<String> {
     let days = values.clone().count();
     let (least, most) =
@@ -43,7 +43,6 @@ fn evenings_in_words(values: impl Iterator<Item = f64> + Clone) -> Option<String
     (days > 0).then(|| format!("{EVENINGS} {}: {least:.4} to {most:.4}", count(days as u32, "day")))
 }
 
-/// A table, indented.
 fn table(head: &[&str], rows: &[Vec<String>]) -> Vec<String> {
     let rows: Vec<Vec<String>> =
         rows.iter().map(|row| row.iter().map(|cell| settle(cell)).collect()).collect();

@@ -1,17 +1,17 @@
-//! What is delivered to a group on each plan, in words.
+//! Text for the quality delivered to a group on each plan.
 
 use super::{settled, table};
 use novamind_insight::{PlanDelivered, QualityEquation, SharedGains};
 use novamind_session::identifiers::Plan;
 
-/// The equation of each plan, where the shared quality comes from, and what the market expects.
+/// Describes the equation of each plan, the sources of shared quality, and the expectations of the market.
 pub fn quality_in_words(own: &QualityEquation) -> Vec<String> {
     let QualityEquation { group, day, base, shared, own: targeted, service_penalty, .. } = own;
     let mut lines = vec![
         format!("quality delivered to {group} on day {day}"),
         format!("  product: base {base:.4} + shared {shared:.4} + {group} {targeted:.4}"),
     ];
-    let head = ["plan", "product", "× multiplier", "= delivered", "- service", "= felt"];
+    let head = ["plan", "product", "× multiplier", "= delivered", "- service", "= perceived"];
     let row = |plan: Plan| {
         let PlanDelivered { tier, multiplier, delivered } = own.plans[plan];
         vec![
@@ -30,11 +30,11 @@ pub fn quality_in_words(own: &QualityEquation) -> Vec<String> {
          + daily noise {noise:.4}"
     ));
     lines.push(format!(
-        "  not copied by rivals: {:.4} of the shared improvements, {:.4} of those for {group}",
+        "  not copied by competitors: {:.4} of the shared improvements, {:.4} of those for {group}",
         own.shared_bank, own.own_bank
     ));
     lines.push(format!(
-        "  the market expects {:+.4} more ({:+.4} of everyone, {:+.4} of {group}) and pays {:+.2} dollars a month more",
+        "  the market expects {:+.4} more ({:+.4} all groups, {:+.4} {group}) and pays {:+.2} dollars a month more",
         own.expectation.quality,
         own.everyone,
         own.expectation.quality - own.everyone,

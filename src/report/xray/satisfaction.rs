@@ -1,16 +1,16 @@
-//! What moved the satisfaction of a group, in words.
+//! Text for the causes of a change in satisfaction.
 
 use super::{evenings_in_words, settled, table};
 use novamind_insight::{MoodTerm, SatisfactionEquation};
 
-/// The mean before, each term, the mean after, and what came of it by the evening.
+/// Describes the mean before, each term, the mean after, and the mean at the end of the day.
 pub fn satisfaction_in_words(own: &SatisfactionEquation) -> Vec<String> {
     let SatisfactionEquation { group, day, weight, left, came, subscribers, .. } = *own;
     let mut lines = vec![format!("satisfaction of {group} on day {day}")];
     match (own.before(), own.after(), own.instant()) {
         (Some(before), Some(after), Some(instant)) => {
             lines.push(format!(
-                "  {:.2} × before {before:.4} + {weight:.2} × felt today {instant:.4} = after {after:.4} \
+                "  {:.2} × before {before:.4} + {weight:.2} × perceived today {instant:.4} = after {after:.4} \
                  ({:+.4}), mean of {}",
                 1.0 - weight,
                 after - before,
@@ -18,7 +18,9 @@ pub fn satisfaction_in_words(own: &SatisfactionEquation) -> Vec<String> {
             ));
             lines.extend(terms(own));
         }
-        _ => lines.push("  nobody felt the day: there were no subscribers in the morning".to_owned()),
+        _ => {
+            lines.push("  no experience today: there were no subscribers at the start of the day".to_owned())
+        }
     }
     let moved = match (own.evening, own.after()) {
         (Some(evening), Some(after)) => format!("mean {evening:.4} ({:+.4})", evening - after),
@@ -26,7 +28,7 @@ pub fn satisfaction_in_words(own: &SatisfactionEquation) -> Vec<String> {
         (None, _) => "no mean".to_owned(),
     };
     lines.push(format!(
-        "  evening: {left} left and {came} came, {} stay, {moved}",
+        "  end of day: {left} left, {came} joined, {} remain, {moved}",
         subscribers_in_words(subscribers)
     ));
     lines.extend(evenings_in_words(own.evenings.iter().flatten().copied()));
@@ -41,7 +43,7 @@ fn subscribers_in_words(count: u32) -> String {
 }
 
 fn terms(own: &SatisfactionEquation) -> Vec<String> {
-    let head = ["term", "today", "day before", "change", "moved the mean by"];
+    let head = ["term", "today", "day before", "change", "change of mean"];
     let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:+.4}"));
     let row = |name: &str, today: Option<f64>, yesterday: Option<f64>| {
         vec![
@@ -56,6 +58,6 @@ fn terms(own: &SatisfactionEquation) -> Vec<String> {
         MoodTerm::ALL.map(|term| row(term.id(), own.term(term), own.term_yesterday(term))).to_vec();
     let forgotten = own.before().map(|before| format!("{:+.4}", 0.0 - own.weight * before));
     let blank = String::new;
-    rows.push(vec!["forgotten".to_owned(), blank(), blank(), blank(), forgotten.unwrap_or_default()]);
+    rows.push(vec!["decay".to_owned(), blank(), blank(), blank(), forgotten.unwrap_or_default()]);
     table(&head, &rows)
 }

@@ -1,16 +1,16 @@
-//! How numbers of a line are settled once it is written: no zero has a sign, and none has more digits than it tells.
+//! Normalizes numbers in text: no zero has a sign, and no number has more digits than significant.
 
 use novamind_base::notation::grouped;
 
-/// Digits before the point from which a number is written in powers of ten.
+/// Number of digits before the point from which powers of ten are used.
 const MOST_DIGITS: usize = 16;
 
-/// Lines whose numbers are settled.
+/// Normalizes the numbers of lines.
 pub fn settled(lines: Vec<String>) -> Vec<String> {
     lines.into_iter().map(|line| settle(&line)).collect()
 }
 
-/// A text in which no zero has a minus before it, and numbers above 1e15 are written in powers of ten.
+/// Removes the minus sign of zeros, and writes numbers above 1e15 in powers of ten.
 pub fn settle(text: &str) -> String {
     let mut settled = String::with_capacity(text.len());
     let mut rest = text;
@@ -43,7 +43,7 @@ pub fn settle(text: &str) -> String {
     settled + rest
 }
 
-/// A number with too many digits before its point, in powers of ten.
+/// Writes a number with too many digits before its point in powers of ten.
 fn shortened(number: &str) -> Option<String> {
     let plain = number.replace(',', "");
     let digits = plain.split('.').next().map_or(0, str::len);

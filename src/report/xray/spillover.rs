@@ -1,4 +1,4 @@
-//! How changes of reputation spilled over between groups: a heat map, and the same in words.
+//! Text for spillover of reputation between groups: a heat map and a table.
 
 use super::reputation::{dropped_in_words, small};
 use super::{settled, table};
@@ -6,46 +6,46 @@ use novamind_insight::Spillover;
 use novamind_session::Spill;
 use novamind_session::identifiers::Group;
 
-/// Marks of a heat map, from the smallest share of the largest spill to the largest.
+/// Marks of a heat map, from the smallest share of the largest spillover to the largest.
 pub const HEAT: [&str; 4] = ["░", "▒", "▓", "█"];
 
-/// The spills of a day: rows are sources, columns are groups that heard of a change.
+/// The spillover of a day: rows are sources, columns are targets.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpillMap {
-    /// What it shows.
+    /// Heading.
     pub heading: String,
-    /// Its columns.
+    /// Columns: target groups.
     pub targets: Vec<Group>,
-    /// Its rows.
+    /// Rows: source groups.
     pub rows: Vec<SpillRow>,
-    /// What was dropped, and what else stands below.
+    /// Dropped changes and other notes.
     pub notes: Vec<String>,
 }
 
-/// What a group told the others.
+/// Effects of a source group.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpillRow {
-    /// The group.
+    /// Source group.
     pub from: Group,
-    /// Its own change.
+    /// Change of its own reputation.
     pub own: String,
-    /// What it was to each target.
+    /// Effect on each target.
     pub cells: Vec<SpillCell>,
 }
 
-/// What the change of a group was to another one.
+/// Effect of a group on another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SpillCell {
-    /// The one has no weight for the other.
+    /// The source has no weight for the target.
     NoWeight,
-    /// It was too small.
+    /// The effect was too small and was dropped.
     Dropped,
-    /// It changed the reputation by so much; with the place of its mark in [`HEAT`].
+    /// Change of the target's reputation, and the index of its mark in [`HEAT`].
     Heard(f64, usize),
 }
 
 impl SpillMap {
-    /// The map of a day.
+    /// Returns the map of a day.
     pub fn of(own: &Spillover) -> SpillMap {
         let Spillover { day, known, spills, .. } = own;
         let heading = format!("changes of reputation on day {day}: rows are sources, columns are targets");
@@ -74,7 +74,7 @@ impl SpillMap {
 }
 
 impl SpillCell {
-    /// What stands in its place: a mark and the change.
+    /// Formats the cell: a mark and the change.
     pub fn in_words(self) -> String {
         match self {
             SpillCell::NoWeight => "·".to_owned(),
@@ -103,7 +103,7 @@ fn notes(own: &Spillover, sources: &[Group], is_silent: bool) -> Vec<String> {
     }
     let mut lines = Vec::new();
     if is_silent {
-        lines.push("  nothing spilled over".to_owned());
+        lines.push("  no spillover".to_owned());
     }
     let small_own: Vec<&str> =
         sources.iter().filter(|group| !own.own[**group].counts).map(|group| group.id()).collect();
@@ -119,7 +119,7 @@ fn notes(own: &Spillover, sources: &[Group], is_silent: bool) -> Vec<String> {
     lines
 }
 
-/// Spills as a heat table in words.
+/// Returns the spillover of a day as a table in text.
 pub fn spillover_in_words(own: &Spillover) -> Vec<String> {
     let SpillMap { heading, targets, rows, notes } = SpillMap::of(own);
     let mut lines = vec![heading];

@@ -1,21 +1,18 @@
-//! The next draws of a part, in words.
+//! Text for the next random draws of a part.
 
 use super::{settled, table};
 use novamind_insight::{Follows, KeyedDraws, NextDraws};
 
-/// Draws of a stream that stand in one row.
 const SHOWN_DRAWS: usize = 8;
-/// Customers that are named.
 const NAMED_CUSTOMERS: usize = 12;
 
-/// The streams that the next day opens, their first draws, and what follows.
+/// Lists the streams of the next day, their first draws, and the results.
 pub fn streams_in_words(own: &NextDraws) -> Vec<String> {
     let NextDraws { part, day, streams, .. } = own;
-    let over = if own.is_over { "; the run is over, so the day does not come" } else { "" };
+    let over = if own.is_over { "; the run has ended, so this day is not simulated" } else { "" };
     let mut lines = vec![format!("next draws of {}, day {day}{over}", part.id())];
     if own.is_replayed {
-        lines
-            .push("  a recorded series is replayed in place of these draws, as far as it reaches".to_owned());
+        lines.push("  a recorded series replaces these draws for its length".to_owned());
     }
     match streams.iter().any(|own| own.draws.len() > SHOWN_DRAWS) {
         true => streams.iter().for_each(|own| lines.extend(in_full(own))),
@@ -24,13 +21,12 @@ pub fn streams_in_words(own: &NextDraws) -> Vec<String> {
     settled(lines)
 }
 
-/// A row for each stream.
 fn side_by_side(streams: &[KeyedDraws]) -> Vec<String> {
     let count = streams.iter().map(|own| own.draws.len()).max().unwrap_or(0);
     let numbers: Vec<String> = (1..=count).map(|number| format!("draw {number}")).collect();
     let mut head = vec!["stream", "key"];
     head.extend(numbers.iter().map(String::as_str));
-    head.push("follows");
+    head.push("result");
     let row = |own: &KeyedDraws| {
         let draws = own.draws.iter().map(|draw| format!("{:.6}", draw.uniform));
         let what = [in_words(&own.follows)];
@@ -47,7 +43,6 @@ fn key(own: &KeyedDraws) -> String {
     parts.collect::<Vec<String>>().join(", ")
 }
 
-/// All draws of a stream, line by line.
 fn in_full(own: &KeyedDraws) -> Vec<String> {
     let mut lines = vec![format!("  {} ({}): {}", own.stream, key(own), in_words(&own.follows))];
     lines.extend(own.draws.chunks(SHOWN_DRAWS).map(|some| {
@@ -60,11 +55,11 @@ fn in_full(own: &KeyedDraws) -> Vec<String> {
 fn in_words(follows: &Follows) -> String {
     match follows {
         Follows::Leads { expected, number } => {
-            format!("{number} come if λ is {expected:.2} as on the last day")
+            format!("{number} leads if λ is {expected:.2} as on the last day")
         }
         Follows::FailedPayments { rate, customers } => failed(*rate, customers),
         Follows::OutageAbove(chance) => format!("an outage if its chance is above {:.2} %", chance * 100.0),
-        Follows::Noise(noise) => format!("noise {noise:+.6} of the shared quality"),
+        Follows::Noise(noise) => format!("noise {noise:+.6} in shared quality"),
         Follows::Project { tier, days, gain } => {
             format!("a project of tier {tier} takes {days} days and adds {gain:.4}")
         }
@@ -74,7 +69,7 @@ fn in_words(follows: &Follows) -> String {
             format!("a surge: {:.2} times the leads until day {}", surge.multiplier, surge.end_day - 1)
         }
         Follows::Surge(None) => "no surge".to_owned(),
-        Follows::Index { before, after } => format!("the index goes from {before:.2} to {after:.2}"),
+        Follows::Index { before, after } => format!("the index changes from {before:.2} to {after:.2}"),
         Follows::RivalMove(Some((sampled, u))) => {
             format!("a move: drawn size {sampled:.4}, or {:.1} % of the shared bank", u * 100.0)
         }
@@ -91,6 +86,6 @@ fn failed(rate: f64, customers: &[u32]) -> String {
     };
     match customers.is_empty() {
         true => format!("{:.2} % of payments fail; none does", rate * 100.0),
-        false => format!("{:.2} % of payments fail: of customers {}{more}", rate * 100.0, named.join(", ")),
+        false => format!("{:.2} % of payments fail: customers {}{more}", rate * 100.0, named.join(", ")),
     }
 }

@@ -1,4 +1,4 @@
-//! Who wrote a figure on a day, in words.
+//! Text for the writes to a figure on a day.
 
 use super::{settled, table};
 use crate::words::{category_name, whole};
@@ -6,7 +6,7 @@ use novamind_base::notation::{cents, grouped};
 use novamind_insight::{WhoWrites, Write, WriteTarget, WrittenBy};
 use novamind_session::{EndCause, ReputationCause};
 
-/// The figure before and after the day, and each write with its amount and what the figure was after it.
+/// Describes the figure before and after the day, and each write with its amount and result.
 pub fn writes_in_words(own: &WhoWrites) -> Vec<String> {
     let WhoWrites { target, day, first, last, writes } = own;
     let value = |value: f64| value_of(*target, value);
@@ -14,7 +14,7 @@ pub fn writes_in_words(own: &WhoWrites) -> Vec<String> {
     let mut lines =
         vec![format!("{target} on day {day}: {} → {}, change {change}", value(*first), value(*last))];
     if writes.is_empty() {
-        lines.push("nothing wrote to it".to_owned());
+        lines.push("no writes".to_owned());
         return lines;
     }
     let row = |write: &Write| {
@@ -25,42 +25,41 @@ pub fn writes_in_words(own: &WhoWrites) -> Vec<String> {
     settled(lines)
 }
 
-/// What wrote, in words: `departures (17)`, `spill-over from S1`, `payments`.
+/// Names the source of a write: `churn (17)`, `spillover from S1`, `payments`.
 pub fn written_by(write: &Write) -> String {
     let count = whole(write.changes.len() as f64);
     match write.by {
-        WrittenBy::Reputation(ReputationCause::Departures) => format!("departures ({count})"),
-        WrittenBy::Reputation(ReputationCause::LostCompany) => format!("lost companies ({count})"),
+        WrittenBy::Reputation(ReputationCause::Departures) => format!("churn ({count})"),
+        WrittenBy::Reputation(ReputationCause::LostCompany) => format!("lost enterprises ({count})"),
         WrittenBy::Reputation(ReputationCause::Mood(mood)) => {
-            format!("mood of {} subscribers", whole(mood.count as f64))
+            format!("satisfaction of {} subscribers", whole(mood.count as f64))
         }
         WrittenBy::Reputation(ReputationCause::SpillOver(spill)) => {
-            format!("spill-over from {}", spill.source)
+            format!("spillover from {}", spill.source)
         }
         WrittenBy::Booked(category) => category_name(category).to_owned(),
-        WrittenBy::Left(cause) => format!("left: {}", why_left(cause)),
+        WrittenBy::Left(cause) => format!("cancelled: {}", why_left(cause)),
         WrittenBy::SignedUp(source) => format!("signed up: {}", source.id()),
         WrittenBy::FirstDeals => "first deals".to_owned(),
     }
 }
 
-/// Why subscribers left.
 fn why_left(cause: EndCause) -> &'static str {
     match cause {
         EndCause::Involuntary => "payment failed",
-        EndCause::Quality => "no plan clears, unhappy",
-        EndCause::Price => "no plan clears",
+        EndCause::Quality => "no plan acceptable, low satisfaction",
+        EndCause::Price => "no plan acceptable",
         EndCause::ExtendedIssue => "an issue stayed open",
         EndCause::QualityChange => "quality",
         EndCause::QuotaChange => "quota",
         EndCause::PriceSensitivity => "price",
         EndCause::LeadTimeout | EndCause::LeadSilent | EndCause::LeadRejected => {
-            "a lead that came to nothing"
+            "a lead that did not convert"
         }
     }
 }
 
-/// How the amount came about, and whether a limit held it.
+/// Describes how the amount was computed, and whether a limit applied.
 fn notes(target: WriteTarget, write: &Write) -> String {
     let how = match write.by {
         WrittenBy::Reputation(ReputationCause::SpillOver(spill)) => {

@@ -334,7 +334,7 @@ mod tests {
         let company = company();
         let shown =
             dialog_picture(&Explain::screen(ScreenId::Inbox, Numbers::shipped().into()), &company, 80, 21);
-        assert!(shown.contains("Negotiate with companies.") && shown.contains("Enterprise"), "{shown}");
+        assert!(shown.contains("Negotiate with enterprises.") && shown.contains("Enterprise"), "{shown}");
         let mut odd = Explain::figure(&figure("no-such-term", None), Numbers::shipped().into());
         let shown = dialog_picture(&odd, &company, 80, 21);
         assert!(shown.contains("cancellations of S1"), "{shown}");

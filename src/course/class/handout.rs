@@ -1,4 +1,4 @@
-//! Handouts: the file from which one student starts (docs/formats/class.md#hand-out).
+//! Handouts: the file from which one student starts (docs/formats/class.md#handout).
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

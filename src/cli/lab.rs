@@ -282,7 +282,9 @@ fn describe(verdict: &Verdict, all: bool) -> String {
             Some((.., second)) => {
                 format!("  biased: {figure}, median z {first:.2} and {second:.2} on the subsequent seeds\n")
             }
-            None => format!("  suspicious: {figure}, median z {first:.2}, not confirmed on the subsequent seeds\n"),
+            None => format!(
+                "  suspicious: {figure}, median z {first:.2}, not confirmed on the subsequent seeds\n"
+            ),
         };
     }
     for name in &comparison.missing {

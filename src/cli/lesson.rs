@@ -90,11 +90,13 @@ fn copy(lesson: &str, to: &str, configuration: &Configuration) -> Result<(), Fai
         false
             if to.is_empty() || !to.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_')) =>
         {
-            return Err(Failure::usage(format!("{to:?}: a lesson name may contain letters, digits, - and _")));
+            return Err(Failure::usage(format!(
+                "{to:?}: a lesson name may contain letters, digits, - and _"
+            )));
         }
-        false => configuration
-            .own_lesson(to)
-            .ok_or_else(|| Failure::usage("this system has no configuration folder: give the path of a file"))?,
+        false => configuration.own_lesson(to).ok_or_else(|| {
+            Failure::usage("this system has no configuration folder: give the path of a file")
+        })?,
     };
     if path.extension().is_none_or(|ending| ending != "toml") {
         return Err(Failure::usage(format!("{to}: the name of a lesson file must end in .toml")));
@@ -190,9 +192,7 @@ fn check(names: &[String], configuration: &Configuration) -> Result<(), Failure>
     }
     match failed {
         0 => Ok(()),
-        failed => {
-            Err(Failure::failed(format!("{failed} of {} lessons failed their check", names.len())))
-        }
+        failed => Err(Failure::failed(format!("{failed} of {} lessons failed their check", names.len()))),
     }
 }
 

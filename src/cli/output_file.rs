@@ -11,8 +11,7 @@ use crate::record::files::folder_of;
 /// Number of leading bytes that identify the kind of a file.
 const BEGINNING: u64 = 8;
 
-const OTHER: &str =
-    "the file exists and was not written by this command: choose another name, or delete it";
+const OTHER: &str = "the file exists and was not written by this command: choose another name, or delete it";
 
 /// Writes a text to a file.
 ///

@@ -70,9 +70,7 @@ fn show(options: &Options, context: &Context) -> Result<(), Failure> {
     }
     let (goal, from) = match (options.week, options.xray) {
         (Some((_, Some(_))), _) => {
-            return Err(Failure::usage(
-                "a replay starts after one week; a range of weeks needs --cast",
-            ));
+            return Err(Failure::usage("a replay starts after one week; a range of weeks needs --cast"));
         }
         (Some((week, None)), _) => (Goal::Week(week), format!("week {week}")),
         (None, true) => (Goal::Last, "the end".to_owned()),
@@ -93,9 +91,7 @@ fn check_inside(recorded: &Recorded, context: &Context) -> Result<(), Failure> {
         Recorded::File(path) => folder_around(path),
     };
     let folder = folder.ok_or_else(|| {
-        Failure::usage(
-            "the x-ray needs the folder of the run; this trajectory is a single file",
-        )
+        Failure::usage("the x-ray needs the folder of the run; this trajectory is a single file")
     })?;
     context.check_look(&folder)?;
     Ok(open_to_look_inside(&folder, context.seal_key()?).map(drop)?)

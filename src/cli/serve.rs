@@ -27,7 +27,10 @@ pub struct Options {
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     if let Some(folder) = &options.client {
         write_client(folder)?;
-        eprintln!("the client is in {}: install it with pip, or add the folder to PYTHONPATH", folder.display());
+        eprintln!(
+            "the client is in {}: install it with pip, or add the folder to PYTHONPATH",
+            folder.display()
+        );
         if !options.which.names_one() {
             return Ok(());
         }

@@ -50,7 +50,10 @@ const NEXT: [&str; 3] = ["next", "next-week", "next_week"];
 const COMMANDS: &[(&str, &str)] = &[
     ("sql", "sql SELECT …             query the database (also: query)"),
     ("queries", "queries [NAME]           list the library of queries, or run one of them"),
-    ("next", "next \"WHY\" naive          submit a rationale and forecasts, simulate a week (also: next-week)"),
+    (
+        "next",
+        "next \"WHY\" naive          submit a rationale and forecasts, simulate a week (also: next-week)",
+    ),
     ("dashboard", "dashboard                show the dashboard of the last week"),
     ("status", "status                   show run, day, cash, runway, subscribers and waiting threads"),
     (
@@ -58,15 +61,15 @@ const COMMANDS: &[(&str, &str)] = &[
         "inbox [all] [where …]    list threads that wait for an answer; inbox NUMBER shows the thread of one company",
     ),
     ("thread", "thread NUMBER            show one thread, turn by turn"),
-    ("rules", "rules [send] RULES       preview what rules would send to waiting threads; with send, send it"),
+    (
+        "rules",
+        "rules [send] RULES       preview what rules would send to waiting threads; with send, send it",
+    ),
     (
         "needs",
         "needs                    list problems that need action, urgent ones first, then by money at risk, each with a call that addresses it",
     ),
-    (
-        "fit",
-        "fit [GROUP]              compare the requirements of each group with the plans",
-    ),
+    ("fit", "fit [GROUP]              compare the requirements of each group with the plans"),
     (
         "leads",
         "leads [GROUP]            show leads by group, paid and by word of mouth, and the cost per lead and per first bill",
@@ -76,10 +79,7 @@ const COMMANDS: &[(&str, &str)] = &[
         "curve GROUP [PRICE QUALITY] show the quality that leads require at a price, and the expected result of a price and a quality",
     ),
     ("changes", "changes                  list settings changed since the last week"),
-    (
-        "check",
-        "check CALL               preview the effect and cost of a call without making it",
-    ),
+    ("check", "check CALL               preview the effect and cost of a call without making it"),
     ("undo", "undo                     undo the last setting of this week"),
     ("redo", "redo                     redo what undo reverted"),
     ("history", "history [N]              list the last N confirmed actions and weeks (20)"),
@@ -88,10 +88,7 @@ const COMMANDS: &[(&str, &str)] = &[
         "why",
         "why FIGURE [WEEK]        compute how much each cause changed a figure of a week: why churn(S1) 44",
     ),
-    (
-        "whatif",
-        "whatif from WEEK: EDITS   re-simulate with other decisions; whatif WEEK lists the decisions",
-    ),
+    ("whatif", "whatif from WEEK: EDITS   re-simulate with other decisions; whatif WEEK lists the decisions"),
     ("memo", "memo [TEXT]              show the notes of the run, or add a line"),
     ("tools", "tools [NAME]             list the tools, or show one of them"),
     ("tables", "tables [NAME]            list the tables, or show one of them"),
@@ -116,10 +113,7 @@ const COMMANDS: &[(&str, &str)] = &[
         "break",
         "break [CONDITION]        the same: stop run when a condition becomes true; list; break clear N|all removes",
     ),
-    (
-        "run",
-        "run DAYS [until …]       debug: simulate days until a breakpoint or the condition becomes true",
-    ),
+    ("run", "run DAYS [until …]       debug: simulate days until a breakpoint or the condition becomes true"),
     (
         "since",
         "since [CONDITION|N]      debug and finished runs: show since when a condition or a breakpoint is true or false",
@@ -136,12 +130,12 @@ const COMMANDS: &[(&str, &str)] = &[
     ),
     ("guess", "guess ANSWER             lessons: answer the question of the step"),
     ("hint", "hint                     lessons: show the next hint of the step"),
-    (
-        "debrief",
-        "debrief                  lessons: compare a finished part with the reference plays",
-    ),
+    ("debrief", "debrief                  lessons: compare a finished part with the reference plays"),
     ("retry", "retry [STEP]             lessons: restart a step"),
-    ("set", "set KEY VALUE [from DAY] debug: set a parameter; set alone lists the differences from the scenario"),
+    (
+        "set",
+        "set KEY VALUE [from DAY] debug: set a parameter; set alone lists the differences from the scenario",
+    ),
     ("help", "help [NAME]              show this list, or help on one command, tool or table"),
     ("pause", "pause [REASON]           stop the clock for a break; then only resume, help and quit work"),
     ("resume", "resume                   restart the clock"),

@@ -191,7 +191,8 @@ impl Host<'_> {
             }
             match typed.as_str() {
                 typed if is_quit(typed) => {
-                    let text = format!("You have left. To continue, run `{}` and give the same label.", self.again);
+                    let text =
+                        format!("You have left. To continue, run `{}` and give the same label.", self.again);
                     self.say("later", &text)?;
                     return Err(Stop::Left(0));
                 }
@@ -227,8 +228,10 @@ impl Host<'_> {
             End::Quit | End::Over if goes_on => Ok(()),
             End::RecordLost => Err(Stop::Left(end.code())),
             end => {
-                let text =
-                    format!("Everything confirmed is saved. To continue, run `{}` and give the same label.", self.again);
+                let text = format!(
+                    "Everything confirmed is saved. To continue, run `{}` and give the same label.",
+                    self.again
+                );
                 self.say("later", &text)?;
                 Err(Stop::Left(end.code()))
             }

@@ -226,9 +226,7 @@ fn internal_error(on_defect: OnDefect) -> Answer {
     static DEFECTS: AtomicU64 = AtomicU64::new(1);
     let id =
         format!("{:012x}", (u64::from(std::process::id()) << 16) + DEFECTS.fetch_add(1, Ordering::Relaxed));
-    on_defect(&format!(
-        "internal error {id}: a request failed; the run is reopened from its record"
-    ));
+    on_defect(&format!("internal error {id}: a request failed; the run is reopened from its record"));
     let mut answer = Answer::wrong(
         Status::Failed,
         "internal_error",

@@ -125,6 +125,7 @@ async fn ask(port: u16, request: Request<Body>) -> Result<Reply, String> {
     let status = response.status().as_u16();
     let bytes =
         to_bytes(Body::new(response.into_body()), MOST_BYTES).await.map_err(|error| in_words(&error))?;
-    let body = serde_json::from_slice(&bytes).map_err(|error| format!("its response is not valid JSON: {error}"))?;
+    let body =
+        serde_json::from_slice(&bytes).map_err(|error| format!("its response is not valid JSON: {error}"))?;
     Ok(Reply { status, body })
 }

@@ -18,7 +18,8 @@ pub fn of_retries(tool: ToolId) -> Map<String, Value> {
         );
     }
     if tool.takes_request_id() {
-        let description = "A unique text for each request. Send it again to retry; the request runs only once";
+        let description =
+            "A unique text for each request. Send it again to retry; the request runs only once";
         fields.insert(
             REQUEST_ID.to_owned(),
             json!({ "type": "string", "minLength": 1, "maxLength": 128, "description": description }),

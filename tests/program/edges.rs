@@ -43,6 +43,25 @@ fn every_kind_of_failure_has_its_exit_code() {
     }
 }
 
+#[test]
+fn earlier_names_of_commands_and_options_still_work() {
+    let home = Home::new();
+    for command in
+        [&["runs", "rescue"][..], &["lab", "laws"], &["lab", "behaviour"], &["study", "anonymise"]]
+    {
+        assert_eq!(home.run(&[command, &["--help"]].concat()).code, 0, "{command:?}");
+    }
+    let seeded = |option: &str| {
+        let options = ["--new", "--mode", "debug", "--seed", "7", option, "2"];
+        let played = home.play(&options, "step\nback cash > 1\nsince cash > 1\nagain\nretry\n");
+        assert_eq!(played.code, 0, "{option}: {}", played.err);
+        assert!(!played.out.contains("is not a command"), "{option}: {}", played.out);
+        played.out.matches("cash > 1").count()
+    };
+    assert!(seeded("--fault") >= 2);
+    assert_eq!(seeded("--planted"), seeded("--fault"));
+}
+
 fn counting_to(most: u32) -> String {
     format!(
         "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < {most}) SELECT x FROM n"

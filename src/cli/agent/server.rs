@@ -175,10 +175,7 @@ impl AgentRun {
             return Err(Failure::with_code(code.unwrap_or(1), said));
         }
         Remote::find(&self.folder, &self.id).ok_or_else(|| {
-            Failure::failed(format!(
-                "the server does not respond; its output is in {}",
-                log.display()
-            ))
+            Failure::failed(format!("the server does not respond; its output is in {}", log.display()))
         })
     }
 }

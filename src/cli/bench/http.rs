@@ -38,8 +38,10 @@ fn http(bench: &Bench) -> Result<Samples, BenchError> {
         serve_http(session, held, &HttpOptions::default(), announce, |words| eprintln!("{words}"))
     });
     let there = waits.recv().ok().and_then(|()| Remote::find(&folder, &run));
-    let samples =
-        there.as_ref().ok_or_else(|| failed("the server does not respond")).and_then(|remote| ask(remote, bench));
+    let samples = there
+        .as_ref()
+        .ok_or_else(|| failed("the server does not respond"))
+        .and_then(|remote| ask(remote, bench));
     if let Some(remote) = there {
         remote.shut_down().map_err(failed)?;
     }

@@ -36,7 +36,9 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     };
     let mut one = open(&options.one)?;
     if one.folder() == Some(&*find_run_to_read(&runs, &options.other)?) {
-        return Err(Failure::usage("give two different runs; to compare two days of one run, use `diff DAY DAY` in plain mode"));
+        return Err(Failure::usage(
+            "give two different runs; to compare two days of one run, use `diff DAY DAY` in plain mode",
+        ));
     }
     let mut other = open(&options.other)?;
     let found = one.inspect().difference_to(&mut other, options.day);

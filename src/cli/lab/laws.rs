@@ -51,7 +51,10 @@ fn find(name: &str) -> Result<&'static WorldDraw, Failure> {
 fn member_of(own: &WorldDraw, wanted: Option<&str>, luck: &Luck) -> Result<(usize, String), Failure> {
     let members = own.family.members(&luck.params);
     let Some(wanted) = wanted else {
-        return members.into_iter().next().ok_or_else(|| Failure::usage("these parameters do not use this distribution"));
+        return members
+            .into_iter()
+            .next()
+            .ok_or_else(|| Failure::usage("these parameters do not use this distribution"));
     };
     let is_wanted = |(number, name): &(usize, String)| {
         name == wanted || (name.starts_with("tier") && number.to_string() == wanted)

@@ -27,8 +27,7 @@ pub fn of_runs<T>(
         let own = find_run_to_read(&folder, name)?;
         // Copies of a folder contain runs with the same id.
         if let Some(before) = known.insert(Manifest::read(&own)?.id, name) {
-            let message =
-                format!("{before} and {name} are the same run; name each run once");
+            let message = format!("{before} and {name} are the same run; name each run once");
             return Err(Failure::usage(message));
         }
         context.look(&own, command, &names.join(" "))?;

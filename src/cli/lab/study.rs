@@ -128,9 +128,9 @@ fn kept_in(
 pub fn merge(options: &MergeOptions) -> Result<(), Failure> {
     let shards = Shards::of(&options.shards).map_err(|error| Failure::failed(error.to_string()))?;
     match &options.out {
-        Some(file) if shards.files().iter().any(|shard| is_same_file(shard, file)) => {
-            Err(Failure::usage(format!("{} is one of the shards, which would be overwritten", file.display())))
-        }
+        Some(file) if shards.files().iter().any(|shard| is_same_file(shard, file)) => Err(Failure::usage(
+            format!("{} is one of the shards, which would be overwritten", file.display()),
+        )),
         Some(file) => write_file(file, Some("the shards are unchanged"), |out| shards.write(out)),
         None => {
             let mut out = BufWriter::new(io::stdout().lock());

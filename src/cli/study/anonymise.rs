@@ -111,8 +111,9 @@ fn secret_of(path: &Path) -> Result<[u8; 32], Failure> {
         }
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
             let mut secret = [0; 32];
-            getrandom::fill(&mut secret)
-                .map_err(|error| Failure::failed(format!("the system returned no random numbers ({error})")))?;
+            getrandom::fill(&mut secret).map_err(|error| {
+                Failure::failed(format!("the system returned no random numbers ({error})"))
+            })?;
             let text = format!("{}\n", blake3::Hash::from_bytes(secret).to_hex());
             own_file(path).and_then(|mut file| file.write_all(text.as_bytes())).map_err(failed)?;
             Ok(secret)

@@ -21,8 +21,7 @@ impl Interpreter {
         let shown = known(&all, name, arguments)?;
         let mut lines: Vec<String> = shown.iter().flat_map(|fit| fit.lines()).collect();
         lines.push(
-            "ranges are for group averages; a customer's required quality rises with the price"
-                .to_owned(),
+            "ranges are for group averages; a customer's required quality rises with the price".to_owned(),
         );
         let data = json!({ "groups": shown.into_iter().map(fit_as_data).collect::<Vec<Value>>() });
         Ok(Answer::done("fit", lines.join("\n"), data))

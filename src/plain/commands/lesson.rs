@@ -108,7 +108,10 @@ impl Interpreter {
 }
 
 fn no_lesson() -> Refusal {
-    Refusal::new("not_in_a_lesson", "this run is not part of a lesson; novamind lesson list shows the lessons")
+    Refusal::new(
+        "not_in_a_lesson",
+        "this run is not part of a lesson; novamind lesson list shows the lessons",
+    )
 }
 
 fn as_data(page: &LessonPage) -> Value {

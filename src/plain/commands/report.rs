@@ -61,7 +61,9 @@ fn in_words(report: &WeekReport) -> String {
         vec![format!("week to day {}: cash change {change}, of which {}", week.day, parts.join(", "))];
     lines.extend(report.short.iter().map(|short| format!("this is a week {short}")));
     if report.was_filed_at_limit() {
-        lines.push("the time limit for this week was reached: it was submitted with the naive projection".to_owned());
+        lines.push(
+            "the time limit for this week was reached: it was submitted with the naive projection".to_owned(),
+        );
     }
     if !report.decided.is_empty() {
         lines.push(format!("decisions before it: {}", report.decided.join("; ")));

@@ -47,8 +47,10 @@ impl Interpreter {
     fn send(&mut self, batch: &Batch) -> Answer {
         let calls = batch.calls();
         if calls.is_empty() {
-            let text =
-                format!("no waiting thread would get an offer or a rejection\n{}", batch.summary().join("\n"));
+            let text = format!(
+                "no waiting thread would get an offer or a rejection\n{}",
+                batch.summary().join("\n")
+            );
             return Answer::refused("rules", Refusal::new("nothing_to_send", text));
         }
         let (mut lines, mut data) = (batch.summary(), Vec::new());

@@ -134,7 +134,8 @@ fn state_in_words(waiting: Option<&AskingThread>, last: &[Cell], customer: u32) 
             _ => "the thread does not wait for you".to_owned(),
         }];
     };
-    let mut parts = vec![format!("the thread waits for you: {} left", count(thread.waiting.days_left, "day"))];
+    let mut parts =
+        vec![format!("the thread waits for you: {} left", count(thread.waiting.days_left, "day"))];
     parts.extend(ask_in_words(thread).map(|ask| format!("the company {ask}")));
     parts.extend(
         thread

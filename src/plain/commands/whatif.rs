@@ -139,7 +139,9 @@ impl Interpreter {
     /// Plays the only alternative of a question in a new branch and continues in it.
     fn adopt(&mut self, question: &Question, column: usize) -> Result<Answer, Problem> {
         if question.futures.is_some() || question.until.is_some() {
-            let text = "adopt cannot be combined with until or futures: the branch is played to the day of this run".to_owned();
+            let text =
+                "adopt cannot be combined with until or futures: the branch is played to the day of this run"
+                    .to_owned();
             return Err(Problem { text, column });
         }
         let decided = match &question.alternatives[..] {

@@ -23,7 +23,8 @@ impl Guard {
     pub fn bar(&self, head: &HeaderMap) -> Option<Answer> {
         let text = |name| head.get(name).map(|value| value.to_str().unwrap_or("?"));
         if head.get_all(HOST).iter().count() != 1 || !text(HOST).is_some_and(is_loopback) {
-            let message = "a request needs exactly one Host header, which must be 127.0.0.1, localhost or [::1]";
+            let message =
+                "a request needs exactly one Host header, which must be 127.0.0.1, localhost or [::1]";
             return Some(Answer::wrong(Status::Forbidden, "host", message));
         }
         let origin = text(ORIGIN).map(|origin| origin.split_once("://").map_or("?", |(_, place)| place));

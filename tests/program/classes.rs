@@ -1,11 +1,11 @@
-//! A class from the command line: handed out, played on machines, collected, shown; and its runs found by every command.
+//! A class from the command line: handed out, played on several machines, collected, shown; every command finds its runs.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::support::home::{Home, id, said};
 
-/// A class of three in a folder, and a machine for each.
+/// A class of three in a folder, and a machine for each student.
 struct Classroom {
     teacher: Home,
 }
@@ -94,7 +94,7 @@ fn a_class_goes_from_hand_outs_to_the_projector() {
     assert_eq!(written.code, 0, "{}", written.err);
     assert!(!fs::read_to_string(&page).expect("a page").contains("S0"));
 
-    // An archive of a lesson is whole: who imports it can look at the run.
+    // An archive of a lesson is complete: importing it is enough to view the run.
     let teacher = &room.teacher;
     assert_eq!(teacher.run(&["runs", "import", &archive]).code, 0);
     assert_eq!(teacher.run(&["report", &id(&run)]).code, 0);

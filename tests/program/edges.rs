@@ -1,4 +1,4 @@
-//! The edge of the program: exit codes, and how many rows come out.
+//! Exit codes, earlier names, and the number of rows of queries.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use crate::support::home::{Home, id};
 #[test]
 fn a_bankruptcy_is_exit_code_4_where_the_caller_wants_to_know() {
     let home = Home::new();
-    // Capacity costs $85 a day, whatever is done.
+    // Capacity costs $85 per day in any case.
     let idle = |extra: &[&str]| {
         home.run(&[&["run", "--policy", "P0", "--seed", "3", "--days", "14"], extra].concat())
     };
@@ -16,7 +16,7 @@ fn a_bankruptcy_is_exit_code_4_where_the_caller_wants_to_know() {
     assert!(ruined.out.contains("bankrupt on day 6"), "{}", ruined.out);
     assert_eq!(idle(&["--cash", "500"]).code, 0, "nobody asked");
     assert_eq!(idle(&["--cash", "50000", "--fail-on-bankruptcy"]).code, 0, "nobody is bankrupt");
-    // One of several is enough, wherever it stands in the order of the seeds.
+    // One of several runs is enough, regardless of its position.
     let options = ["--cash", "500", "--fail-on-bankruptcy", "--json"];
     let several =
         home.run(&[&["run", "--policy", "P0", "--seed", "3..4", "--days", "14"], &options[..]].concat());

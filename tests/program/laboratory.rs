@@ -1,4 +1,4 @@
-//! Commands of the laboratory from a shell: tables, JSON, drawings, wrong grids.
+//! Laboratory commands from a shell: tables, JSON, drawings, invalid grids.
 
 use std::fs;
 
@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use crate::support::home::Home;
 
-/// What a command prints as JSON.
+/// Returns the JSON output of a command.
 fn json(home: &Home, arguments: &[&str]) -> Value {
     let said = home.run(&[arguments, &["--json"]].concat());
     assert_eq!(said.code, 0, "{arguments:?}: {}", said.err);
@@ -33,7 +33,7 @@ fn what_needs_no_run_is_told_in_every_form() {
     let path = drawing.to_string_lossy();
     assert_eq!(home.run(&["lab", "curves", "--svg", &path]).code, 0);
     assert!(fs::read_to_string(&drawing).expect("a drawing").starts_with("<svg"));
-    // Other parameters, another account.
+    // Other parameters give another account.
     let own = |row: usize, arguments: &[&str]| {
         let all = json(&home, &[&["lab", "bound"], arguments].concat());
         all["tables"]["account"]["rows"][row]["own"].as_f64().expect("a number")
@@ -46,7 +46,7 @@ fn what_needs_no_run_is_told_in_every_form() {
         said.contains("no rivals: the parameters in force have none") && !said.contains("lucks"),
         "{said}"
     );
-    // Where it is paid once and not three times over, more is left of it, too.
+    // If development is paid once instead of three times, more cash remains.
     let once = ["--slack", "1"];
     assert!(own(estimate, &[once, off].concat()) > own(estimate, &once));
 }

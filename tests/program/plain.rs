@@ -1,4 +1,4 @@
-//! Stories of plain mode through the built program: pipes, scripts, refusals, the end.
+//! Plain mode through the built program: pipes, scripts, rejections, exits.
 
 use std::io::Write;
 use std::path::Path;
@@ -12,7 +12,7 @@ fn program(runs: &Path) -> Command {
     command
 }
 
-/// Plays lines; returns what was said on standard output and the exit code.
+/// Plays lines; returns standard output and the exit code.
 fn play(runs: &Path, options: &[&str], lines: impl AsRef<[u8]>) -> (String, i32) {
     let mut child = program(runs)
         .args(["play", "--plain"])
@@ -120,7 +120,7 @@ fn a_line_that_cannot_be_read_says_where_and_what_is_near() {
     assert!(said[9]["error"].as_str().is_some_and(|text| text.contains("ledger")));
 }
 
-/// A list of deals may stand without its name; nobody is there yet to be offered anything.
+/// A list of deals may be given without its name; there is no enterprise yet.
 #[test]
 fn deals_are_written_as_lists() {
     let runs = tempfile::tempdir().expect("a folder");
@@ -220,7 +220,7 @@ fn termination_at_the_prompt_leaves_at_once_with_everything_saved() {
         line.clear();
         assert!(said.read_line(&mut line).expect("readable") > 0, "it ended");
     }
-    // The answer is out, so the line is on the disk; whether the prompt is reached yet does not matter.
+    // The answer was printed, so the line is on disk; the prompt may not have been reached yet.
     let kill = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().expect("kill runs");
     assert!(kill.success());
     let rest = std::io::read_to_string(said).expect("readable");
@@ -384,7 +384,7 @@ fn the_views_of_the_xray_answer_in_words_and_as_data() {
     let debug = ["--seed", "7", "--days", "90", "--mode", "debug"];
     let (said, _) = play(runs.path(), &[&debug[..], &["--json"]].concat(), &lines);
     let said = objects(&said);
-    // The last line tells of the end of the input.
+    // The last line reports the end of the input.
     let answer = |at: usize| &said[said.len() - views.len() - 1 + at];
     let data = |at: usize| &answer(at)["data"];
     let number = |value: &serde_json::Value| value.as_f64().expect("a number");
@@ -430,7 +430,7 @@ fn the_views_of_the_xray_answer_in_words_and_as_data() {
     ] {
         assert!(said.contains(part), "{part} is missing in\n{said}");
     }
-    // In a sandbox run nothing that is asked makes a difference.
+    // In a sandbox run the answer does not depend on the question.
     let (said, _) = play(runs.path(), &["--seed", "7", "--days", "90", "--json"], &lines);
     let said = objects(&said);
     let answers = &said[said.len() - views.len() - 1..said.len() - 1];
@@ -500,7 +500,7 @@ run 3 until subscribers(S1) < 0   # never
     assert_eq!(answers[15]["error"], "run needs a number of days, for instance run 28");
     assert_eq!((&answers[16]["error"], &answers[16]["column"]), (&"a number is missing".into(), &19.into()));
     assert_eq!((&data(17)["day"], &data(17)["stopped_by"]), (&(day + 3).into(), &serde_json::json!([])));
-    // In a run that may not be looked into, every one of them is refused alike before anything of it is read.
+    // In a run without permission to inspect, all of them are rejected before anything is parsed.
     let (said, _) =
         play(runs.path(), &["--seed", "7", "--days", "28", "--json"], format!("{EXAMPLE}{asked}"));
     let said = objects(&said);
@@ -566,7 +566,7 @@ fn hidden_tables_answer_in_plain_mode_and_from_the_command_line() {
         .find_map(|entry| std::fs::read_to_string(entry.path().join("trajectory.jsonl")).ok());
     let lines = lines.expect("a run");
     assert_eq!(lines.matches("\"kind\":\"xray\"").count(), 4, "each that was let through is a line");
-    // Elsewhere the answer is the same whatever is asked for.
+    // In other runs the answer is the same for any question.
     let (said, _) =
         play(runs.path(), &["--seed", "7", "--days", "28", "--json"], format!("{EXAMPLE}\n{asked}"));
     let said = objects(&said);
@@ -603,7 +603,7 @@ fn parameters_are_set_in_debug_runs_and_refused_in_others() {
     let lines = format!("{EXAMPLE}\n{}\n", commands.join("\n"));
     let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--mode", "debug", "--json"], &lines);
     let said = objects(&said);
-    // Behind the answers stands where the run was saved.
+    // The last line states where the run was saved.
     let first = said.len() - 1 - commands.len();
     let answer = |at: usize| &said[first + at];
     assert_eq!(answer(0)["data"]["in_force"], serde_json::json!([]));
@@ -662,7 +662,7 @@ fn the_curve_of_a_group_is_told_with_what_leads_would_do() {
     ] {
         assert!(told[at].to_string().contains(words), "{words}: {}", told[at]);
     }
-    // In a debug run the same words are a look.
+    // In a debug run the same commands are recorded inspections.
     let (said, _) =
         play(runs.path(), &["--seed", "7", "--days", "28", "--mode", "debug"], "curve S1\ncurve D_S05\n");
     assert!(

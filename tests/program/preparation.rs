@@ -1,4 +1,4 @@
-//! What an experimenter does around the sessions of a study: check, assign, watch, note.
+//! Preparation and supervision of a study: check, assign, watch, notes.
 
 use std::fs;
 use std::path::PathBuf;
@@ -69,7 +69,7 @@ fn settings_that_were_removed_are_named_and_do_nothing() {
     let audited = lab.run("audit", &[&lab.path("m1").display().to_string()]);
     assert_eq!(audited.code, 0, "{}{}", audited.out, audited.err);
     assert!(audited.err.contains("[integrity] witness was removed"), "{}", audited.err);
-    // A key that never existed is still refused.
+    // A key that never existed is still rejected.
     lab.edit("code_words = true", "code_word = true");
     lab.run("check", &[]).fails(3, &["study.toml", "code_word"]);
 }
@@ -135,7 +135,7 @@ fn an_assignment_grows_and_keeps_the_rows_that_are_there() {
     cells.iter_mut().for_each(|cell| *cell = cell.rsplit_once(',').expect("an order").0);
     cells.sort_unstable();
     assert_eq!(cells, ["A,11", "A,12", "A,13", "B,11", "B,12", "B,13"]);
-    // Rows that somebody wrote stay as they are, and so does the file.
+    // Rows edited by hand do not change, and neither does the file.
     let by_hand = second.replacen(",A,", ",C,", 1);
     fs::write(lab.path("pilot/assignment.csv"), &by_hand).expect("written");
     lab.run("assign", &["--add", "1"]).fails(1, &["are not those that are drawn with 5", "by hand"]);

@@ -1,5 +1,4 @@
-//! Runs that are handed over: archives out and in, their tables, the session summary, runs side by side, and the schema
-//! of the lines.
+//! Exported runs: archives, their tables, the session summary, comparisons of runs, and the schema of the lines.
 
 mod collected;
 mod handover;
@@ -29,7 +28,7 @@ next \"as planned\" naive
 next \"as planned\" naive
 ";
 
-/// A baseline run of three weeks by a participant; its folder.
+/// Plays a baseline run of three weeks by a participant; returns its folder.
 fn played(home: &Home, participant: &str) -> PathBuf {
     let before: Vec<PathBuf> = folders(&home.runs());
     let options = ["--mode", "baseline", "--participant", participant, "--seed", "7"];
@@ -56,7 +55,7 @@ fn import(home: &Home, archive: &Path) -> Said {
     home.run(&["runs", "import", &text(archive)])
 }
 
-/// The files of a plain archive.
+/// Returns the files of a plain archive.
 fn contents(archive: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut files = BTreeMap::new();
     for entry in tar::Archive::new(fs::File::open(archive).expect("a file")).entries().expect("entries") {
@@ -69,7 +68,7 @@ fn contents(archive: &Path) -> BTreeMap<String, Vec<u8>> {
     files
 }
 
-/// An archive of files, as anybody could make one.
+/// Writes an archive of arbitrary files.
 fn forged(archive: &Path, files: &[(String, Vec<u8>)]) {
     let mut builder = tar::Builder::new(fs::File::create(archive).expect("a file"));
     for (name, bytes) in files {
@@ -82,7 +81,7 @@ fn forged(archive: &Path, files: &[(String, Vec<u8>)]) {
 
 fn header(name: &str, size: u64, kind: tar::EntryType) -> tar::Header {
     let mut header = tar::Header::new_ustar();
-    // Past the checks of the crate, which does not write dangerous names.
+    // Bypasses the checks of the crate, which does not write dangerous names.
     header.as_old_mut().name[..name.len()].copy_from_slice(name.as_bytes());
     header.set_size(size);
     header.set_mode(0o644);
@@ -107,7 +106,7 @@ fn a_run_goes_out_sealed_and_comes_back_the_same() {
         assert_eq!(imported.code, 0, "{}", imported.err);
         assert!(imported.out.contains(&checksum), "{}", imported.out);
     }
-    // The second archive found the run there already.
+    // The second archive found an existing run.
     let there = other.runs().join(id(&run));
     for file in ["run.toml", "trajectory.jsonl", "memo.md"] {
         assert_eq!(bytes_of(&there, file), bytes_of(&run, file), "{file}");
@@ -128,7 +127,7 @@ fn another_record_of_a_run_is_told_apart_and_imported_under_a_name_of_its_own() 
     let run = played(&home, "P01");
     let (archive, _) = export(&home, &run, "run.tar");
     assert_eq!(import(&other, &archive).code, 0);
-    // Both go on, and otherwise.
+    // Both runs continue differently.
     for (home, price) in [(&home, "A=11"), (&other, "A=19")] {
         let lines = format!("set_prices {price}\nnext \"on\" naive\n");
         assert_eq!(home.play(&["--run", &id(&run)], &lines).code, 0);
@@ -199,7 +198,7 @@ fn the_database_of_an_archive_opens_without_the_program() {
     let typed = "SELECT 1.0 * count(*) FROM sqlite_master WHERE name = 'subscriptions' \
                  AND sql LIKE '%CAST(effective_price AS REAL) AS effective_price%'";
     assert_eq!(ask(typed), 1.0, "SQLite before 3.52 needs the type to sort whole rows");
-    // The SQLite of the machine's Python is often older than the one in the program.
+    // The SQLite of the machine's Python is often older than that of the program.
     let script = "import sqlite3, sys\n\
                   rows = sqlite3.connect(sys.argv[1]).execute('SELECT * FROM subscriptions ORDER BY status DESC')\n\
                   at = [column[0] for column in rows.description].index('effective_price')\n\
@@ -271,14 +270,14 @@ fn dangerous_and_foreign_files_are_refused() {
         builder.finish().expect("an archive");
         import(&home, &bad).fails(3, &["not an ordinary file"]);
     }
-    // What a damaged archive holds is told in one line that does not steer the terminal.
+    // The contents of a damaged archive are reported in one line without terminal control sequences.
     forged(&bad, &[("0123abcd/\u{1b}[2J\nrun.toml".to_owned(), b"x".to_vec())]);
     import(&home, &bad).fails(3, &["0123abcd/\\u{1b}[2J\\nrun.toml does not belong to a run"]);
     let mut torn = header("0123abcd/run.toml", 0, tar::EntryType::Regular);
     torn.as_old_mut().cksum = *b"FRO\nM\x1b[m";
     fs::write(&bad, torn.as_bytes()).expect("a header");
     import(&home, &bad).fails(3, &["not an archive of a run", "FRO\\nM\\u{1b}[m"]);
-    // A size that is only claimed: nothing is read and nothing is reserved.
+    // A false size: nothing is read and no memory is reserved.
     fs::write(&bad, header("0123abcd/run.toml", 7 << 30, tar::EntryType::Regular).as_bytes())
         .expect("a header");
     import(&home, &bad).fails(3, &["run.toml is too large"]);
@@ -364,7 +363,7 @@ fn all_runs_go_out_with_tables_that_agree_with_them() {
             assert_eq!(week[name], value.to_string(), "{name}");
         }
     }
-    // The codebook knows every column of every table.
+    // The codebook describes every column of every table.
     let columns = table(&out.join("columns.csv"));
     let all = ["forecasts", "queries", "events", "notes"]
         .map(|name| (name, table(&out.join(format!("{name}.csv")))));
@@ -382,12 +381,12 @@ fn all_runs_go_out_with_tables_that_agree_with_them() {
         let there = Home::new();
         assert_eq!(import(&there, &archive).code, 0);
     }
-    // Again, of one participant only; the archives may be there already.
+    // Again, for one participant only; the archives may exist.
     let one = home.run(&["runs", "export", "--all", "--participant", "P01", "--out", &text(&out)]);
     assert_eq!((one.code, table(&out.join("runs.csv")).len()), (0, 1));
     let list = home.run(&["runs", "list", "--participant", "P01"]);
     assert_eq!(list.out.lines().count(), 1, "{}", list.out);
-    // A damaged run is named and keeps nobody else's from going out.
+    // A damaged run is reported and does not prevent the export of the others.
     fs::write(first.join("trajectory.jsonl"), "nonsense\n").expect("damage");
     let said = home.run(&["runs", "export", "--all", "--out", &text(&out)]);
     said.fails(3, &["1 of 2 runs"]);
@@ -416,7 +415,7 @@ fn sessions_are_summed_up_and_runs_compared() {
     let names = [id(&first), id(&second)];
     let said = home.run(&["lab", "compare", &names[0], &names[1]]);
     for part in ["P01", "P02", "rule-based baseline", "cash on day 21", "day 0", "Claude Fable 5", "differ"] {
-        // Both runs are played alike, so nothing but their end differs.
+        // Both runs have the same decisions, so only their end differs.
         assert_eq!(said.out.contains(part), part != "differ", "{part}: {}", said.out);
     }
     let object = home.run(&["lab", "compare", &names[0], &names[1], "--json"]).out;

@@ -1,4 +1,4 @@
-//! A disk that is full: what is not saved does not happen, and what happened is not lost.
+//! A full disk: what is not saved has no effect, and what was confirmed is not lost.
 
 use std::fs;
 use std::path::Path;
@@ -9,10 +9,10 @@ use crate::support::home::{Home, Said, bytes_of, id, lines_of, said};
 
 /// Blocks of 512 bytes a file may have.
 const BLOCKS: usize = 2048;
-/// A statement whose line of the trajectory is about this much longer than without.
+/// Bytes by which a statement lengthens its line of the trajectory.
 const PADDING: usize = 490_000;
 
-/// Plays on a disk on which no file grows beyond the limit.
+/// Plays on a disk on which no file exceeds the limit.
 fn play(home: &Home, options: &str, lines: &str) -> Said {
     let program = env!("CARGO_BIN_EXE_novamind");
     let script = format!("trap '' XFSZ; ulimit -f {BLOCKS}; exec '{program}' play --plain --json {options}");
@@ -68,7 +68,7 @@ fn what_was_not_saved_did_not_happen() {
 
 #[test]
 fn a_week_whose_closing_line_did_not_fit_is_simulated_again() {
-    // How long the lines are.
+    // Lengths of the lines.
     let home = Home::new();
     let start = "set_prices A=12\n".to_owned() + &padding(PADDING);
     home.play(&["--days", "28"], &(start.clone() + "next naive\n"));
@@ -136,7 +136,7 @@ fn a_query_makes_a_missing_database_anew_on_the_disk_and_changes_nothing_else() 
         assert_eq!(bytes_of(&run, "trajectory.jsonl"), trajectory);
     }
     assert_eq!(ask().out, before);
-    // Where it finds no room it is made in memory.
+    // Without space it is built in memory.
     fs::remove_file(run.join("world.db")).expect("gone");
     let program = env!("CARGO_BIN_EXE_novamind");
     let sql = "SELECT count(*), sum(amount) FROM ledger";

@@ -1,7 +1,7 @@
-//! Bad input and bad luck against the built program: wrong files, damaged runs, a full disk, no terminal.
+//! Invalid input and failures against the built program: wrong files, damaged runs, a full disk, no terminal.
 //!
-//! Whatever happens, the message names the place and what can be done, the exit code is the promised one, and
-//! nothing that was confirmed is lost.
+//! In each case the message names the place and the next step, the exit code is as documented, and nothing that was confirmed is
+//! lost.
 
 #[cfg(unix)]
 mod adoption;
@@ -125,7 +125,7 @@ fn a_wrong_policy_names_file_line_and_what_is_allowed() {
     home.run(&["run", "--policy", "nothere", "--days", "28"]).fails(2, &["nothere", "baseline"]);
 }
 
-/// What is done to a trajectory of ten lines.
+/// A change of a trajectory of ten lines.
 type Damage = fn(&mut Vec<u8>);
 
 fn flip_after(bytes: &mut [u8], line: usize, word: &str) {
@@ -184,7 +184,7 @@ fn a_changed_figure_is_found_without_the_database() {
 
 #[test]
 fn a_torn_last_line_is_cut_off_and_the_run_goes_on() {
-    // Up to the line that closes the second week: what stands after it was written on leaving.
+    // Up to the line that ends the second week; later lines were written when the session closed.
     let played = || {
         let home = Home::new();
         let folder = home.two_weeks();
@@ -196,7 +196,7 @@ fn a_torn_last_line_is_cut_off_and_the_run_goes_on() {
         fs::write(folder.join("trajectory.jsonl"), &good[..good.len() - lost]).expect("written");
         let said = home.play(&["--run", &id], "set_prices A=13\n");
         assert_eq!(said.code, 0, "{}", said.err);
-        // The torn line closed a week that had been confirmed: it is simulated again.
+        // The torn line ended a confirmed week, which is simulated again.
         for part in [
             "day 14 of 28",
             "note: The last line of the trajectory was unfinished",
@@ -280,7 +280,7 @@ fn what_stands_in_the_way_is_named() {
     let home = Home::new();
     let folder = home.two_weeks();
     let id = id(&folder);
-    // Root may write where others may not, so folders stand where files should be.
+    // Root can write anywhere, so folders take the place of files.
     for file in ["lock", "world.db", "trajectory.jsonl"] {
         let (path, aside) = (folder.join(file), folder.join("aside"));
         fs::rename(&path, &aside).expect("moved");
@@ -315,7 +315,7 @@ fn a_folder_that_cannot_be_written_is_named() {
     let folder = home.two_weeks();
     let allow = |mode| fs::set_permissions(&folder, fs::Permissions::from_mode(mode)).expect("changed");
     allow(0o555);
-    // Root may write anyway: then there is nothing to see here.
+    // Root can write anyway, so there is nothing to check.
     if fs::write(folder.join("probe"), "").is_err() {
         fs::set_permissions(folder.join("trajectory.jsonl"), fs::Permissions::from_mode(0o444))
             .expect("changed");
@@ -347,7 +347,7 @@ fn a_run_in_use_is_left_to_its_owner() {
     }
     let watched = home.play(&["--run", &id, "--watch"], "set_prices A=14\nquit\n");
     assert!(watched.out.contains("open read-only"), "{}", watched.out);
-    // Looking on is allowed, and the owner goes on undisturbed.
+    // Watching is allowed, and the player continues undisturbed.
     let seen = home.run(&["query", &id, "SELECT MAX(day) AS day FROM config_history"]);
     assert_eq!(seen.code, 0, "{}", seen.err);
     pipe.write_all(b"set_prices A=13\nquit\n").expect("written");

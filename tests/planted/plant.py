@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes one error at a time in a copy of the repository and counts how many the test suite notices.
+"""Applies one mutation at a time in a copy of the repository and counts how many the test suite detects.
 
     tests/planted/plant.py                        all errors, the whole suite
     tests/planted/plant.py --only 3,17,40         some errors

@@ -89,7 +89,7 @@ fn a_saved_run_holds_the_state_that_was_reported() {
     let verified = program(runs.path()).args(["replay", &id, "--verify"]).output().expect("it runs");
     let text = String::from_utf8_lossy(&verified.stdout).into_owned();
     assert!(verified.status.success(), "{}", String::from_utf8_lossy(&verified.stderr));
-    assert!(text.contains("12 states reached again, day 84"), "{text}");
+    assert!(text.contains("12 states verified, day 84"), "{text}");
     let hash = said["state_hash"].as_str().expect("a hash");
     assert!(text.contains(hash), "{text} instead of {hash}");
     let opened = Session::open(&runs.path().join(&id), Access::Write, true).expect("it opens");

@@ -499,7 +499,7 @@ fn run_of_a_program_with_other_terms_than_a_baseline_is_a_sandbox_and_says_so() 
     assert!(mode_of(&["--days", "28", "--mode", "baseline"]).1.contains("28 days needs a study"));
     let help = Home::new().run(&["serve", "--help"]).out;
     let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(help.contains("a baseline run has 500 ") && help.contains("otherwise sandbox]"), "{help}");
+    assert!(help.contains("baseline runs have 500") && help.contains("for programs baseline"), "{help}");
 }
 
 #[test]

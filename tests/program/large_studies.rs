@@ -208,7 +208,7 @@ fn a_full_disk_loses_nothing_that_was_kept() {
     assert!(last.ends_with(b"\n"), "what did not fit is taken back");
     assert_eq!(home.run(&["lab", "study", &file]).out, whole, "there is room again");
     assert_eq!(kept_runs(&home, ".jsonl"), 20);
-    limited(1, "").fails(1, &["few.csv", "File too large", "runs are kept"]);
+    limited(1, "").fails(1, &["few.csv", "File too large", "finished runs are saved"]);
     assert!(!Path::new(&into).exists(), "half a table is none");
     let told = home.run(&["lab", "study", &file, "--out", &into]);
     assert_eq!(told.code, 0, "{}", told.err);

@@ -24,7 +24,7 @@ fn a_lesson_is_copied_changed_and_checked() {
     assert!(fs::read_to_string(texts).expect("texts").contains("## For the teacher"));
     // Existing lessons are never replaced.
     for taken in ["late-help", "ladder"] {
-        let message = format!("there is a lesson {taken} already");
+        let message = format!("lesson {taken} already exists");
         home.run(&["lesson", "copy", "ladder", taken]).fails(2, &[&message]);
     }
     for no_name in ["", "two words"] {

@@ -409,7 +409,7 @@ fn the_views_of_the_xray_answer_in_words_and_as_data() {
         (8, "there is no group S9; did you mean S1 or S2 or S3?"),
         (9, "name a group, and a day or none: xray quality S2 84"),
         (10, "a whole number is expected"),
-        (11, "no draws of servce can be told; did you mean service or surge?"),
+        (11, "there are no draws of servce; did you mean service or surge?"),
         (12, "choose a number of draws from 1 to 1000"),
         (13, "there is no day 8; choose a day from 1 to 7"),
         (14, "a whole number is expected"),
@@ -451,7 +451,7 @@ break
 run 70
 back 1
 back 9
-back churn(S1) > 5% over 7
+since churn(S1) > 5% over 7
 find leads(S1) > 0
 who reputation(S1)
 who cash 3
@@ -497,7 +497,7 @@ run 3 until subscribers(S1) < 0   # never
     assert_eq!(answers[12]["error"], "a whole number is expected, not yesterday");
     assert_eq!(data(13)["removed"].as_array().map(Vec::len), Some(2));
     assert_eq!(answers[14]["code"], "usage");
-    assert_eq!(answers[15]["error"], "run needs a number of days, for instance run 28");
+    assert_eq!(answers[15]["error"], "run needs a number of days, for example run 28");
     assert_eq!((&answers[16]["error"], &answers[16]["column"]), (&"a number is missing".into(), &19.into()));
     assert_eq!((&data(17)["day"], &data(17)["stopped_by"]), (&(day + 3).into(), &serde_json::json!([])));
     // In a run without permission to inspect, all of them are rejected before anything is parsed.
@@ -653,9 +653,9 @@ fn the_curve_of_a_group_is_told_with_what_leads_would_do() {
     let conversion = |end: &str| data(1)["conversion"][end].as_f64().expect("a share");
     assert!(conversion("least") < conversion("likely") && conversion("likely") < conversion("most"));
     for (at, words) in [
-        (2, "name a group, and a price with a quality or neither"),
+        (2, "give a group, and optionally a price and a quality"),
         (3, "there is no group S9; did you mean"),
-        (4, "name a group, and a price with a quality or neither"),
+        (4, "give a group, and optionally a price and a quality"),
         (5, "numbers of at least 0"),
         (6, "group_not_discovered"),
         (7, "curve GROUP PRICE QUALITY"),

@@ -88,7 +88,7 @@ fn a_check_names_what_a_session_of_this_length_cannot_do() {
     assert_eq!(told.code, 0, "{}", told.err);
     for words in [
         "ok    world       scenario default\n",
-        "note  questions   questions/week.toml asks after week 9: a session has 4 weeks",
+        "note  questions   questions/week.toml is due after week 9: a session has 4 weeks",
         "note  forecasts   of 4 weeks' forecasts come due: 4 looking 7 days ahead, 1 looking 28 days ahead, 0 looking 84",
     ] {
         assert!(told.out.contains(words), "{words} is missing in\n{}", told.out);
@@ -121,7 +121,7 @@ fn an_assignment_grows_and_keeps_the_rows_that_are_there() {
     lab.run("assign", &["--add", "3"]).fails(2, &["no assignment yet"]);
     lab.run("assign", &["--participants", "8", "--draw", "6"]).fails(2, &["draw = 5"]);
     let made = lab.run("assign", &["--participants", "8"]);
-    assert!(made.out.contains("the last block has 2 of 6 cells: with 12 participants"), "{}", made.out);
+    assert!(made.out.contains("the last block has 2 of 6 cells; with 12 participants"), "{}", made.out);
     let told = lab.run("check", &[]).out;
     assert!(told.contains("8 labels in blocks of 6: the last block has 2 of 6 cells"), "{told}");
     let first = lab.assignment();
@@ -138,7 +138,7 @@ fn an_assignment_grows_and_keeps_the_rows_that_are_there() {
     // Rows edited by hand do not change, and neither does the file.
     let by_hand = second.replacen(",A,", ",C,", 1);
     fs::write(lab.path("pilot/assignment.csv"), &by_hand).expect("written");
-    lab.run("assign", &["--add", "1"]).fails(1, &["are not those that are drawn with 5", "by hand"]);
+    lab.run("assign", &["--add", "1"]).fails(1, &["were not drawn with seed 5", "by hand"]);
     assert_eq!(lab.assignment(), by_hand);
 }
 
@@ -156,7 +156,7 @@ fn a_remark_lies_beside_the_runs_of_its_label() {
     assert!(note("P01", "asked what a lead is").out.contains("m1/remarks.jsonl"));
     assert_eq!(note("P03", "has not come").code, 0, "a place of the assignment");
     assert_eq!(note("P02", "left early").code, 0);
-    note("P99", "who is it?").fails(2, &["P99 is no label of this study", "Nothing was noted"]);
+    note("P99", "who is it?").fails(2, &["P99 is not a label of this study", "Nothing was recorded"]);
     let shown = lab.run("watch", &[&machines[0], &machines[1], "--once"]).out;
     let texts = ["came late", "asked what a lead is", "has not come", "left early"];
     let places: Vec<usize> = texts.iter().map(|text| shown.find(text).expect(text)).collect();

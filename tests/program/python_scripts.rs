@@ -71,7 +71,7 @@ next naive
     let verified = home.run(&["replay", &id, "--verify"]);
     let without = without_python(&home, &["replay", &id, "--verify"], "");
     assert_eq!((verified.code, verified.out.as_str()), (0, without.out.as_str()), "{}", without.err);
-    assert!(verified.out.contains("2 states reached again"), "{}", verified.out);
+    assert!(verified.out.contains("2 states verified"), "{}", verified.out);
     // Simulated from the first line, the dashboard is the one that was shown.
     std::fs::remove_file(home.only_run().join("snapshot.bin")).ok();
     let opened = without_python(&home, &["play", "--plain", "--run", &id], "dashboard\n");

@@ -86,7 +86,7 @@ fn a_participant_is_led_from_the_label_to_the_thanks() {
     }
     assert!(!first.out.contains("seed"), "participants do not learn the seed");
     // The command that continues can be typed as shown, and contains neither label nor code.
-    let again = format!("`novamind --study {}` continues: give the same label.", lab.folder());
+    let again = format!("To continue, run `novamind --study {}` and give the same label.", lab.folder());
     assert!(first.out.contains(&again), "{again} is missing in\n{}", first.out);
     // They return, end the run, and answer the remaining questions.
     let second = lab.visit("P01\nnext \"e\" naive\nI tried to grow.\n1, 3\n");
@@ -193,14 +193,14 @@ fn at_every_prompt_and_question_one_can_leave_or_withdraw() {
     }
     let back = lab.visit(&format!("P01\n9\n2\nhelp\nhelp branch\n{WEEKS}quit\n"));
     for part in
-        ["The session goes on before its first week.", "withdraw                 erase", "week 4 done"]
+        ["The session continues before its first week.", "withdraw                 erase", "week 4 done"]
     {
         assert!(back.out.contains(part), "{part} is missing in\n{}", back.out);
     }
     let refused =
         ["branch WEEK", "step [DAYS]", "xray VIEW", "lens CUSTOMER", "set KEY", "The session begins"];
     assert_eq!(refused.map(|part| back.out.contains(part)), [false; 6], "{}", back.out);
-    assert!(lab.visit("P01\nquit\n").out.contains("The session goes on after week 4."));
+    assert!(lab.visit("P01\nquit\n").out.contains("The session continues after week 4."));
     let trajectory = Trajectory::read(&lab.only_run("P01").join("trajectory.jsonl")).expect("it reads");
     let changes = trajectory.lines.iter().filter_map(|line| match &line.record {
         Record::Activity(Activity::Answer(answer)) => Some(answer.changes),
@@ -255,13 +255,13 @@ fn a_practice_shows_no_results_to_any_command_without_the_code() {
     assert!(begun.out.contains("week 1 done"), "{}", begun.out);
     let practice = id(&lab.only_run("P1"));
     let as_participant = |command: &[&str]| lab.0.run(&[command, &[&practice, "--as", "P1"]].concat());
-    as_participant(&["play", "--plain", "--run"]).fails(2, &["novamind --study DIR` goes on with it"]);
-    as_participant(&["report"]).fails(2, &["shows no results of it"]);
+    as_participant(&["play", "--plain", "--run"]).fails(2, &["continue it with `novamind --study DIR`"]);
+    as_participant(&["report"]).fails(2, &["hides its results"]);
     // The other three weeks end it, and the session starts.
     let over = lab.visit("P1\nnext \"b\" naive\nnext \"c\" naive\nnext \"d\" naive\nquit\n");
     assert!(over.out.contains("Before you begin"), "{}", over.out);
     for command in [&["play", "--plain", "--run"][..], &["report"], &["report", "--session"], &["pictures"]] {
-        as_participant(command).fails(2, &["shows no results of it"]);
+        as_participant(command).fails(2, &["hides its results"]);
     }
     let with_code = ["--study", &lab.folder(), "--code", "open sesame", "report", &practice, "--as", "P1"];
     let report = lab.0.run(&with_code);
@@ -293,7 +293,7 @@ fn wrong_protocols_are_named_with_line_and_key() {
     assert!(checked.out.contains("digest") && checked.out.contains("ok    clock"), "{}", checked.out);
     lab.assign();
     lab.0.run(&["study", "assign", &lab.folder(), "--participants", "3"]).fails(1, &["exists"]);
-    lab.0.run(&["study", "new", &lab.folder()]).fails(1, &["a study already"]);
+    lab.0.run(&["study", "new", &lab.folder()]).fails(1, &["already a study"]);
 }
 
 #[test]
@@ -464,5 +464,5 @@ fn the_keys_of_a_study_seal_snapshots_and_sign_archives() {
     let loose = of_folder("loose");
     assert!(loose.code == 1 && loose.out.contains("archive not signed"), "{}", loose.out);
     let audited = lab.0.run(&["study", "audit", &lab.folder()]);
-    assert!(audited.out.contains("Nothing was found"), "{}", audited.out);
+    assert!(audited.out.contains("No findings"), "{}", audited.out);
 }

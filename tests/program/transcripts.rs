@@ -313,13 +313,13 @@ fn a_trajectory_becomes_a_run_in_the_same_state() {
     assert_eq!(other.run(&["replay", "latest", "--verify"]).code, 0);
     // Another world answers differently, and the import reports it.
     let said = other.run(&["runs", "import", "--transcript", &file.to_string_lossy(), "--seed", "12"]);
-    said.fails(1, &["ended in another state"]);
+    said.fails(1, &["the final state differs"]);
     let lines = other.0.path().join("calls.jsonl");
     fs::write(&lines, "{\"tool\": \"set_prices\", \"args\": {\"A\": 12}, \"success\": false}\n")
         .expect("a file");
     let lines = lines.to_string_lossy().into_owned();
     other.run(&["runs", "import", "--transcript", &lines]).fails(2, &["--seed"]);
-    other.run(&["runs", "import", "--transcript", &lines, "--seed", "3"]).fails(1, &["answered otherwise"]);
+    other.run(&["runs", "import", "--transcript", &lines, "--seed", "3"]).fails(1, &["differs from the transcript"]);
     other.run(&["runs", "import", "--transcript", "nothing.json"]).fails(1, &["nothing.json"]);
     other.run(&["runs", "import", "--seed", "3", "run.nmrun"]).fails(2, &["--transcript"]);
 }

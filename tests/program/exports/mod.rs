@@ -140,7 +140,7 @@ fn another_record_of_a_run_is_told_apart_and_imported_under_a_name_of_its_own() 
     let path = text(&second);
     other.run(&["runs", "import", &path, "--under", "../out"]).fails(1, &["is no name for a run"]);
     other.run(&["runs", "import", &path, "--under", &id(&run)]).fails(1, &["there is a run"]);
-    other.run(&["runs", "import", &path, &path, "--under", "second"]).fails(2, &["names one run"]);
+    other.run(&["runs", "import", &path, &path, "--under", "second"]).fails(2, &["exactly one archive"]);
     let imported = other.run(&["runs", "import", &path, "--under", "second"]);
     assert!(
         imported.code == 0 && imported.out.contains("as second imported"),

@@ -291,7 +291,7 @@ fn anonymous_tables_tell_nothing_of_who_took_part_and_can_be_linked_by_who_has_t
         assert!(rows.iter().map(|row| &row["participant"]).is_sorted(), "{name}");
     }
     assert!(
-        said.out.contains("the smallest group of sessions with equal seed and condition has "),
+        said.out.contains("the smallest group of sessions with the same seed and condition has "),
         "{}",
         said.out
     );

@@ -168,7 +168,7 @@ fn a_damaged_trajectory_is_refused_with_its_line_and_left_as_it_is() {
     home.play(&["--run", &id], "").fails(3, &["trajectory.jsonl"]);
     fs::write(folder.join("trajectory.jsonl"), &good).expect("written");
     let said = home.run(&["replay", &id, "--verify"]);
-    assert!(said.code == 0 && said.out.contains("2 states reached again"), "{}{}", said.out, said.err);
+    assert!(said.code == 0 && said.out.contains("2 states verified"), "{}{}", said.out, said.err);
 }
 
 #[test]
@@ -370,7 +370,7 @@ fn the_good_beginning_of_a_damaged_run_becomes_a_branch() {
     home.play(&["--run", &id(&folder)], "").fails(3, &["novamind runs rescue"]);
     let rescued = home.run(&["runs", "rescue", &id(&folder)]);
     assert_eq!(rescued.code, 0, "{}", rescued.err);
-    assert!(rescued.out.contains("stands at day 7"), "{}", rescued.out);
+    assert!(rescued.out.contains("is on day 7"), "{}", rescued.out);
     let own = rescued.out.split_whitespace().nth(1).expect("a name").to_owned();
     assert_eq!(home.run(&["replay", &own, "--verify"]).code, 0);
     assert_eq!(fs::read(&path).expect("a trajectory"), bytes, "the damaged run was changed");

@@ -656,7 +656,7 @@ fn the_curve_of_a_group_is_told_with_what_leads_would_do() {
         (2, "give a group, and optionally a price and a quality"),
         (3, "there is no group S9; did you mean"),
         (4, "give a group, and optionally a price and a quality"),
-        (5, "numbers of at least 0"),
+        (5, "numbers from 0"),
         (6, "group_not_discovered"),
         (7, "curve GROUP PRICE QUALITY"),
     ] {

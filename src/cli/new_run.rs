@@ -29,7 +29,7 @@ pub struct NewRunOptions {
     /// Label of the player
     #[arg(long, value_name = "LABEL")]
     participant: Option<String>,
-    /// State that the participant agreed to the text in consent.md of the configuration folder
+    /// Confirm that the participant agreed to the text in consent.md of the configuration folder
     #[arg(long)]
     consent: bool,
     /// Set a parameter of a debug run; can be repeated

@@ -173,7 +173,7 @@ fn what_a_dead_server_left_behind_leads_nobody_astray() {
         assert_eq!(shell.does(&["status"])["day"], 7);
         assert_eq!(shell.does(&["stop"])["stopped"], true);
     }
-    assert!(stranger.accept().is_err(), "nobody asks the stranger");
+    assert!(stranger.accept().is_err(), "the other program gets no request");
     // A run that a user plays is not taken over.
     let mut child = shell.home.program().args(["serve", "--run", &name]).spawn().expect("the program starts");
     let mut line = String::new();

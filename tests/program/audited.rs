@@ -351,7 +351,7 @@ fn audit_finds_views_of_the_hidden_state_of_a_seed_that_is_still_played() {
         }),
         "{found:?}"
     );
-    assert_eq!(study.audit(&["one"]), [], "nobody else plays the seed there");
+    assert_eq!(study.audit(&["one"]), [], "no other run has the seed there");
     // A debug run of the seed.
     let debug = ["play", "--plain", "--seed", "2718", "--mode", "debug", "--days", "42"];
     assert_eq!(said(study.program("two").args(debug), "quit\n").code, 0);

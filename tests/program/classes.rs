@@ -69,7 +69,7 @@ fn a_class_goes_from_hand_outs_to_the_projector() {
 
     let runs = machines[1].runs().display().to_string();
     let collected = room.teacher.run(&["class", "collect", &room.folder(), &archive, &runs]);
-    assert_eq!(collected.code, 1, "somebody is missing: {}", collected.err);
+    assert_eq!(collected.code, 1, "a student is missing: {}", collected.err);
     assert!(
         collected.out.contains("runs: 2 finished") && collected.out.contains("! S03: nothing came back"),
         "{}",

@@ -45,7 +45,7 @@ fn the_built_program_and_the_library_reach_the_same_state() {
         let mut command = program(runs.path());
         command.args(["run", "--policy", name, "--seed", "3", "--until", &until.to_string()]).args(extra);
         let built = run(&mut command).remove(0);
-        let policy = Policy::find(name, &configuration).expect("a shipped policy");
+        let policy = Policy::find(name, &configuration).expect("a bundled policy");
         let mut spec = RunSpec { until: Some(until), ..RunSpec::of_seed(3) };
         if !extra.is_empty() {
             spec.cash = Some(1e9);

@@ -76,7 +76,7 @@ impl Server {
     pub fn stop(mut self) -> i32 {
         let pid = self.child.id().to_string();
         assert!(Command::new("kill").args(["-TERM", &pid]).status().expect("kill").success());
-        self.child.wait().expect("it ends").code().expect("it ends by itself")
+        self.child.wait().expect("it ends").code().expect("it ends on its own")
     }
 }
 

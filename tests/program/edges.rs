@@ -14,8 +14,8 @@ fn a_bankruptcy_is_exit_code_4_where_the_caller_wants_to_know() {
     let ruined = idle(&["--cash", "500", "--fail-on-bankruptcy"]);
     assert_eq!((ruined.code, ruined.err.as_str()), (4, ""), "{}", ruined.out);
     assert!(ruined.out.contains("bankrupt on day 6"), "{}", ruined.out);
-    assert_eq!(idle(&["--cash", "500"]).code, 0, "nobody asked");
-    assert_eq!(idle(&["--cash", "50000", "--fail-on-bankruptcy"]).code, 0, "nobody is bankrupt");
+    assert_eq!(idle(&["--cash", "500"]).code, 0, "the option is not given");
+    assert_eq!(idle(&["--cash", "50000", "--fail-on-bankruptcy"]).code, 0, "no run is bankrupt");
     // One of several runs is enough, regardless of its position.
     let options = ["--cash", "500", "--fail-on-bankruptcy", "--json"];
     let several =

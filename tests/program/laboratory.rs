@@ -86,7 +86,7 @@ fn a_grid_of_ones_own_is_played_once_and_a_wrong_one_names_line_and_key() {
     let first = json(&home, &arguments);
     let cash =
         |at: usize| first["tables"]["configurations"]["rows"][at]["median_cash"].as_f64().expect("cash");
-    assert!(cash(0) > cash(1), "a floor that is soon reached ends spending");
+    assert!(cash(0) > cash(1), "a cash floor that is reached early ends spending");
     assert_eq!(first["tables"]["configurations"]["rows"][0]["floor"], "high");
     let store = home.runs().join(".lab/baseline.jsonl");
     let kept = fs::read_to_string(&store).expect("results");

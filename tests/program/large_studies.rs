@@ -206,7 +206,7 @@ fn a_full_disk_loses_nothing_that_was_kept() {
     assert!((1..20).contains(&before), "{before}");
     let last = fs::read(&kept(&home)[0]).expect("runs");
     assert!(last.ends_with(b"\n"), "what did not fit is taken back");
-    assert_eq!(home.run(&["lab", "study", &file]).out, whole, "there is room again");
+    assert_eq!(home.run(&["lab", "study", &file]).out, whole, "there is space again");
     assert_eq!(kept_runs(&home, ".jsonl"), 20);
     limited(1, "").fails(1, &["few.csv", "File too large", "finished runs are saved"]);
     assert!(!Path::new(&into).exists(), "half a table is none");

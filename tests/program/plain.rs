@@ -25,7 +25,7 @@ fn play(runs: &Path, options: &[&str], lines: impl AsRef<[u8]>) -> (String, i32)
     // A program that ends early does not read the rest.
     let _ = child.stdin.take().expect("a pipe").write_all(lines.as_ref());
     let Output { status, stdout, stderr } = child.wait_with_output().expect("the program ends");
-    let code = status.code().expect("it ends by itself");
+    let code = status.code().expect("it ends on its own");
     assert!(stderr.is_empty(), "standard error is silent: {}", String::from_utf8_lossy(&stderr));
     (String::from_utf8(stdout).expect("UTF-8"), code)
 }

@@ -206,7 +206,7 @@ fn at_every_prompt_and_question_one_can_leave_or_withdraw() {
         Record::Activity(Activity::Answer(answer)) => Some(answer.changes),
         _ => None,
     });
-    assert_eq!(changes.collect::<Vec<_>>(), [0], "what was refused was no answer");
+    assert_eq!(changes.collect::<Vec<_>>(), [0], "a rejected line is not an answer");
     for (label, lines) in [
         ("P02", "yes\nskip\nwithdraw\nno\nwithdraw\nwithdraw\n"),
         ("P03", "withdraw\nno\nwithdraw\nwithdraw\n"),
@@ -375,8 +375,8 @@ fn the_end_shows_what_the_protocol_says_and_no_more() {
             // The start of the session shows the company as of the last week.
             let (_, after) = match json {
                 true => end.out.split_once('\n').expect("the greeting"),
-                false if shows => end.out.split_at(end.out.find("run ended").expect("the end is told")),
-                false => end.out.split_at(end.out.find("the run is over").expect("the end is told")),
+                false if shows => end.out.split_at(end.out.find("run ended").expect("the end is reported")),
+                false => end.out.split_at(end.out.find("the run is over").expect("the end is reported")),
             };
             let told = after.contains("horizon") && (json || after.contains("score"));
             assert_eq!(told, shows, "{results}:\n{after}");

@@ -281,7 +281,7 @@ fn anonymous_tables_tell_nothing_of_who_took_part_and_can_be_linked_by_who_has_t
         let at = format!("{year}-");
         secrets.push(&at);
         for secret in secrets {
-            assert!(!given.contains(secret), "{name} tells {secret:?}");
+            assert!(!given.contains(secret), "{name} contains {secret:?}");
         }
         assert_eq!(given.lines().count() > 1, name != "answers" || given.contains("mood"), "{name}");
     }

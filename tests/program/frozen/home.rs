@@ -148,7 +148,7 @@ fn in_turn(command: &mut Command, lines: &str) -> Said {
     output.read_to_string(&mut out).expect("text");
     let ended = child.wait_with_output().expect("the program ends");
     let err = String::from_utf8(ended.stderr).expect("UTF-8");
-    Said { out, err, code: ended.status.code().expect("it ends by itself") }
+    Said { out, err, code: ended.status.code().expect("it ends on its own") }
 }
 
 /// Returns whether a file is derived and not for other programs: the database, the snapshot, the lock with a process id.

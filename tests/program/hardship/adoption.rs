@@ -55,7 +55,7 @@ fn a_program_that_is_killed_while_it_adopts_leaves_no_run() {
     child.kill().expect("killed");
     child.wait().expect("it ends");
     assert_eq!(unnamed(&home).len(), 1, "it was killed on the way");
-    assert_eq!(listed(&home).len(), 1, "what is not whole is no run");
+    assert_eq!(listed(&home).len(), 1, "an incomplete branch is not a run");
     let again = home.play(&["--run", &id(&run), "--json"], "whatif adopt from 2: set_prices * 0.9\nstatus\n");
     assert_eq!(again.code, 0, "{}", again.err);
     assert_eq!((unnamed(&home), listed(&home).len()), (Vec::new(), 2));
@@ -82,7 +82,7 @@ fn a_disk_without_room_for_a_branch_keeps_the_run_and_makes_none() {
         "{adopted}"
     );
     assert!(adopted["error"].as_str().is_some_and(|words| words.contains("there is no branch")), "{adopted}");
-    assert_eq!(answers.last().expect("an answer")["day"], 84, "the run goes on");
+    assert_eq!(answers.last().expect("an answer")["day"], 84, "the run continues");
     assert_eq!((unnamed(&home), listed(&home).len()), (Vec::new(), 1));
     assert_eq!(home.run(&["replay", &id(&run), "--verify"]).code, 0);
 }

@@ -62,7 +62,7 @@ fn what_was_not_saved_did_not_happen() {
     assert_eq!(again.code, 0, "{}", again.err);
     let objects = again.objects();
     assert_eq!(price(&objects), accepted, "the file is what was confirmed");
-    assert!(objects.iter().all(|object| object["ok"] != false), "there is room again: {}", again.out);
+    assert!(objects.iter().all(|object| object["ok"] != false), "there is space again: {}", again.out);
     assert_eq!(home.run(&["replay", &id(&folder), "--verify"]).code, 0);
 }
 
@@ -88,9 +88,9 @@ fn a_week_whose_closing_line_did_not_fit_is_simulated_again() {
         assert_eq!(said.code, 0, "{}", said.err);
         let objects = said.objects();
         let next = objects.iter().find(|object| object["command"] == "next").expect("an answer");
-        assert_eq!(next["ok"], accepted, "room for {room} bytes: {next}");
+        assert_eq!(next["ok"], accepted, "space for {room} bytes: {next}");
         let told = next["data"]["remark"].as_str().is_some_and(|text| text.contains("simulated again"));
-        assert_eq!(told, remark, "room for {room} bytes: {next}");
+        assert_eq!(told, remark, "space for {room} bytes: {next}");
         let status = objects.iter().find(|object| object["command"] == "status").expect("an answer");
         let folder = home.only_run();
         assert!(length(&folder) <= BLOCKS * 512);
@@ -98,7 +98,7 @@ fn a_week_whose_closing_line_did_not_fit_is_simulated_again() {
         let again = home.play(&["--run", &id(&folder), "--json"], "status\n");
         assert_eq!(again.code, 0, "{}", again.err);
         let objects = again.objects();
-        assert_eq!(objects[1]["data"], status["data"], "room for {room} bytes");
+        assert_eq!(objects[1]["data"], status["data"], "space for {room} bytes");
         assert_eq!(objects[0]["day"], if accepted { 7 } else { 0 });
         assert_eq!(home.run(&["replay", &id(&folder), "--verify"]).code, 0);
     }
@@ -116,7 +116,7 @@ fn an_archive_that_finds_no_room_is_not_blamed() {
     full.fails(3, &["trajectory.jsonl", "File too large"]);
     assert!(!full.err.contains("ask for the archive again"), "{}", full.err);
     assert_eq!(fs::read_dir(other.runs()).expect("a folder").count(), 0, "it leaves nothing behind");
-    assert_eq!(other.run(&["runs", "import", &archive]).code, 0, "there is room again");
+    assert_eq!(other.run(&["runs", "import", &archive]).code, 0, "there is space again");
 }
 
 #[test]

@@ -246,7 +246,7 @@ fn a_damaged_manifest_is_made_anew_and_the_trajectory_goes_on() {
         assert!(list.out.contains(&id) && !list.out.contains("cannot be read"), "{}", list.out);
         let said = home.play(&["--run", &id], "");
         assert!(said.code == 0 && said.out.contains(&part), "{part}: {}{}", said.out, said.err);
-        assert!(!home.play(&["--run", &id], "").out.contains("run.toml"), "it is told once");
+        assert!(!home.play(&["--run", &id], "").out.contains("run.toml"), "it is reported once");
     }
     fs::remove_file(folder.join("run.toml")).expect("gone");
     assert!(!home.run(&["runs"]).out.contains("cannot be read"));
@@ -292,7 +292,7 @@ fn what_stands_in_the_way_is_named() {
     fs::create_dir(folder.join("memo.md")).expect("a folder");
     let said = home.play(&["--run", &id], "memo remember\nset_prices A=14\n");
     assert!(said.out.contains("refused not_") && said.out.contains("memo.md"), "{}", said.out);
-    assert!(said.out.contains("ok set_prices"), "the game goes on: {}", said.out);
+    assert!(said.out.contains("ok set_prices"), "the game continues: {}", said.out);
 
     let file = home.0.path().join("file");
     fs::write(&file, "in the way").expect("a file");
@@ -425,7 +425,7 @@ fn options_before_a_command_are_refused_and_not_forgotten() {
     }
     assert_eq!(fs::read_dir(home.runs()).expect("a folder").count(), 0, "no other run was started");
     let runs = home.runs().to_string_lossy().into_owned();
-    assert_eq!(home.run(&["--runs-dir", &runs, "--as", "P01", "runs"]).code, 0, "these may stand there");
+    assert_eq!(home.run(&["--runs-dir", &runs, "--as", "P01", "runs"]).code, 0, "these may be there");
     assert_eq!(home.run(&["play", "--plain", "--mode", "lesson"]).code, 2, "there are no lessons yet");
 }
 

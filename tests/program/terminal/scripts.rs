@@ -42,5 +42,5 @@ fn a_script_is_stopped_by_a_key_and_keeps_nobody_from_leaving() {
     terminal.signal("-TERM");
     terminal.end();
     // A script may take minutes; this limit does not measure speed.
-    assert!(begun.elapsed() < Duration::from_secs(100), "nobody waits for a script that is given up");
+    assert!(begun.elapsed() < Duration::from_secs(100), "the program does not wait for a stopped script");
 }

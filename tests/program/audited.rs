@@ -431,7 +431,7 @@ fn audit_finds_damaged_lines_after_the_end() {
     study.visit("one", "P01\nnext \"six\" naive\n7\n");
     assert_eq!(study.audit(&["one"]), []);
     let path = study.only_run("one", "P01").join("afterwards.jsonl");
-    let good = fs::read_to_string(&path).expect("what was done after the end");
+    let good = fs::read_to_string(&path).expect("the actions after the end");
     fs::write(&path, good.replacen("\"value\":7", "\"value\":1", 1)).expect("written");
     assert_eq!(study.kinds(&["one"]), ["damaged"]);
 }

@@ -128,5 +128,5 @@ fn every_command_finds_the_runs_of_participants_that_the_list_shows() {
         assert_eq!(answer.code, 0, "{command:?}: {}", answer.err);
     }
     let own = |run: &str| machine.run(&["--as", "P01", "report", run]).code;
-    assert_eq!((own(&first), own(&second)), (0, 3), "a participant finds the own runs only");
+    assert_eq!((own(&first), own(&second)), (0, 3), "a participant finds only their own runs");
 }

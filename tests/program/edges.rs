@@ -84,7 +84,7 @@ fn a_query_brings_five_thousand_rows_whether_or_not_the_database_is_there() {
             assert_eq!(rows(most), expected, "of {most}, the database is {database}");
         }
         let cut = home.run(&["query", &id(&run), &counting_to(5_001), "--format", "json"]);
-        assert!(cut.out.contains("\"truncated\":true"), "what is left out is said");
+        assert!(cut.out.contains("\"truncated\":true"), "omitted rows are reported");
         fs::remove_file(run.join("world.db")).unwrap_or_default();
     }
 }

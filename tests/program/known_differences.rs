@@ -493,7 +493,7 @@ fn every_known_difference_has_an_example_that_holds() {
         let own = examples.iter().filter(|(beginning, _)| line.starts_with(beginning));
         assert_eq!(own.count(), 1, "a line of the page has no example, or several: {line}");
     }
-    assert_eq!(lines.len(), examples.len(), "an example belongs to no line");
+    assert_eq!(lines.len(), examples.len(), "an example has no line on the page");
     let stage = Stage::new();
     for (beginning, example) in examples {
         println!("{beginning}");

@@ -40,7 +40,7 @@ fn what_needs_no_run_is_told_in_every_form() {
     };
     let (development, estimate) = (6, 15);
     let off = ["--scenario", "competitor-off"];
-    assert!(own(development, &off) < own(development, &[]), "without rivals development is cheap");
+    assert!(own(development, &off) < own(development, &[]), "without competitors development is cheap");
     let said = json(&home, &["lab", "bound", "--scenario", "competitor-off"]).to_string();
     assert!(
         said.contains("no rivals: the parameters in force have none") && !said.contains("lucks"),

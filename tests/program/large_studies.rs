@@ -205,11 +205,11 @@ fn a_full_disk_loses_nothing_that_was_kept() {
     let before = kept_runs(&home, ".jsonl");
     assert!((1..20).contains(&before), "{before}");
     let last = fs::read(&kept(&home)[0]).expect("runs");
-    assert!(last.ends_with(b"\n"), "what did not fit is taken back");
+    assert!(last.ends_with(b"\n"), "the part that did not fit is removed");
     assert_eq!(home.run(&["lab", "study", &file]).out, whole, "there is space again");
     assert_eq!(kept_runs(&home, ".jsonl"), 20);
     limited(1, "").fails(1, &["few.csv", "File too large", "finished runs are saved"]);
-    assert!(!Path::new(&into).exists(), "half a table is none");
+    assert!(!Path::new(&into).exists(), "an incomplete table is not written");
     let told = home.run(&["lab", "study", &file, "--out", &into]);
     assert_eq!(told.code, 0, "{}", told.err);
     assert_eq!(fs::read_to_string(&into).expect("rows"), whole);

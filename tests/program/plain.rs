@@ -283,7 +283,7 @@ fn words_are_explained() {
     ] {
         assert!(said.contains(part), "{part} is missing in\n{said}");
     }
-    assert_eq!(said.matches("Runway (money)").count(), 2, "help knows terms too");
+    assert_eq!(said.matches("Runway (money)").count(), 2, "help also explains terms");
 }
 
 #[test]

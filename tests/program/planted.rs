@@ -84,7 +84,7 @@ fn the_page_of_answers_says_what_the_program_shows() {
                 let named = what.trim().split(' ').next().unwrap_or_default();
                 assert!(diff.contains(named), "{}: {what}: {diff}", row.number);
             }
-            None => assert!(diff.starts_with("the runs are alike on every day"), "{}: {diff}", row.number),
+            None => assert!(diff.starts_with("the runs are equal on every day"), "{}: {diff}", row.number),
         }
         let shown = ask(&home, &faulty, &row.commands);
         // The figures of the correct run are listed, too; a row of a changed figure would change them.

@@ -150,7 +150,7 @@ fn another_record_of_a_run_is_told_apart_and_imported_under_a_name_of_its_own() 
     );
     let beside = other.runs().join("second");
     assert_eq!(bytes_of(&beside, "trajectory.jsonl"), bytes_of(&run, "trajectory.jsonl"));
-    assert_eq!(bytes_of(&there, "trajectory.jsonl"), before, "the record that was there is as it was");
+    assert_eq!(bytes_of(&there, "trajectory.jsonl"), before, "the existing record is unchanged");
     assert_eq!(other.run(&["replay", "second", "--verify"]).code, 0);
     assert!(other.run(&["runs", "list"]).out.contains("second"));
 }
@@ -194,7 +194,7 @@ fn the_database_of_an_archive_opens_without_the_program() {
             && ask("SELECT 1.0 * count(*) FROM ads_revenue") > 0.0
     );
     let packed = "SELECT 1.0 * count(*) FROM sqlite_master WHERE name LIKE '%_blocks'";
-    assert_eq!(ask(packed), 0.0, "there is nothing only the program can read");
+    assert_eq!(ask(packed), 0.0, "there are no files that only the program can read");
     let typed = "SELECT 1.0 * count(*) FROM sqlite_master WHERE name = 'subscriptions' \
                  AND sql LIKE '%CAST(effective_price AS REAL) AS effective_price%'";
     assert_eq!(ask(typed), 1.0, "SQLite before 3.52 needs the type to sort whole rows");
@@ -223,7 +223,7 @@ fn what_was_changed_is_refused_and_named() {
         assert!(folders(&other.runs()).is_empty());
     };
     forged(&bad, &files);
-    assert_eq!(import(&other, &bad).code, 0, "the files as they were are fine");
+    assert_eq!(import(&other, &bad).code, 0, "the unchanged files are valid");
     fs::remove_dir_all(other.runs().join(id(&run))).expect("it was there");
     for (at, (name, bytes)) in files.iter().enumerate().filter(|(_, (name, _))| !name.ends_with("seal.toml"))
     {
@@ -367,8 +367,8 @@ fn all_runs_go_out_with_tables_that_agree_with_them() {
     let columns = table(&out.join("columns.csv"));
     let all = ["forecasts", "queries", "events", "notes"]
         .map(|name| (name, table(&out.join(format!("{name}.csv")))));
-    assert_eq!(table(&out.join("answers.csv")).len(), 0, "nobody asked anything");
-    assert_eq!(all[2].1.len(), 2 * trajectory.lines().count(), "both runs were played alike");
+    assert_eq!(table(&out.join("answers.csv")).len(), 0, "there were no questions");
+    assert_eq!(all[2].1.len(), 2 * trajectory.lines().count(), "both runs had the same decisions");
     let others = all.iter().map(|(name, rows)| (*name, &rows[0]));
     for (name, first) in [("runs", &runs[0]), ("weeks", &weeks[0])].into_iter().chain(others) {
         let known: Vec<&str> =

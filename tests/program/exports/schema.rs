@@ -190,7 +190,7 @@ fn all_kinds_of_lines(runs: &Path) -> Vec<Value> {
     let mut run = Session::create(new, &Configuration::shipped()).expect("a run");
     run.call("set_prices", &json!({"A": 12, "B": 25, "C": 55}), Via::Form).expect("prices");
     run.call("set_prices", &json!({"A": 14}), Via::Palette).expect("a price");
-    run.undo(Via::Plain).expect("it is taken back");
+    run.undo(Via::Plain).expect("it is reverted");
     run.call("set_prices", &json!({"A": 0}), Via::Http).expect_err("no price");
     run.call("research_market", &json!({}), Via::Policy).expect("research");
     run.query("SELECT count(*) FROM ledger").expect("a count");

@@ -53,7 +53,7 @@ fn what_was_not_saved_did_not_happen() {
     }));
     let last = objects.iter().rfind(|object| object["command"] == "set_prices" && object["ok"] == true);
     let accepted = last.expect("an accepted call")["data"]["current"]["A"].as_f64();
-    assert_eq!(price(&objects), accepted, "memory is what was confirmed");
+    assert_eq!(price(&objects), accepted, "memory has exactly what was confirmed");
     let next = objects.iter().find(|object| object["command"] == "next").expect("an answer");
     assert_eq!((next["code"].as_str(), next["day"].as_u64()), (Some("not_saved"), Some(0)));
 
@@ -61,7 +61,7 @@ fn what_was_not_saved_did_not_happen() {
     let again = home.play(&["--run", &id(&folder), "--json"], "changes\nset_prices A=5\nnext naive\n");
     assert_eq!(again.code, 0, "{}", again.err);
     let objects = again.objects();
-    assert_eq!(price(&objects), accepted, "the file is what was confirmed");
+    assert_eq!(price(&objects), accepted, "the file has exactly what was confirmed");
     assert!(objects.iter().all(|object| object["ok"] != false), "there is space again: {}", again.out);
     assert_eq!(home.run(&["replay", &id(&folder), "--verify"]).code, 0);
 }

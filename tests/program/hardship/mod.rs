@@ -213,7 +213,7 @@ fn a_torn_last_line_is_cut_off_and_the_run_goes_on() {
     let said = home.play(&["--run", &id], "");
     assert!(said.code == 0 && said.out.contains("unfinished (100 bytes)"), "{}{}", said.out, said.err);
     let bytes = bytes_of(&folder, "trajectory.jsonl");
-    assert!(bytes.starts_with(&good) && lines_of(&bytes).len() == 11, "only coming and leaving were added");
+    assert!(bytes.starts_with(&good) && lines_of(&bytes).len() == 11, "only start and end lines were added");
 }
 
 #[test]

@@ -35,7 +35,7 @@ fn a_stopped_program_gives_the_terminal_back_and_takes_it_again() {
     for _ in 0..2 {
         terminal.signal("-TSTP");
         terminal.wait_until_stopped();
-        assert!(!terminal.is_raw(), "whoever has the terminal now can type");
+        assert!(!terminal.is_raw(), "the terminal accepts input again");
         terminal.wait_for_bytes(b"\x1b[?1049l");
         terminal.signal("-CONT");
         terminal.wait_for("Needs you");

@@ -45,7 +45,7 @@ fn what_was_typed_survives_a_kill_of_the_console() {
     terminal.wait_for("we wait for leads");
     terminal.signal("-TERM");
     terminal.end();
-    assert!(drafts.exists(), "a signal leaves it for the next time");
+    assert!(drafts.exists(), "after a signal it stays for the next session");
 }
 
 #[test]

@@ -46,8 +46,7 @@ fn every_kind_of_failure_has_its_exit_code() {
 #[test]
 fn earlier_names_of_commands_and_options_still_work() {
     let home = Home::new();
-    for command in
-        [&["runs", "rescue"][..], &["lab", "laws"], &["lab", "behaviour"], &["study", "anonymise"]]
+    for command in [&["runs", "rescue"][..], &["lab", "laws"], &["lab", "behaviour"], &["study", "anonymise"]]
     {
         assert_eq!(home.run(&[command, &["--help"]].concat()).code, 0, "{command:?}");
     }

@@ -152,7 +152,11 @@ fn a_remark_lies_beside_the_runs_of_its_label() {
     let note =
         |label: &str, text: &str| lab.run("watch", &[&machines[0], &machines[1], "--note", label, text]);
     let said = note("P02", "came late");
-    assert!(said.out.contains("recorded a note for P02 in") && said.out.contains("m2/remarks.jsonl"), "{}", said.out);
+    assert!(
+        said.out.contains("recorded a note for P02 in") && said.out.contains("m2/remarks.jsonl"),
+        "{}",
+        said.out
+    );
     assert!(note("P01", "asked what a lead is").out.contains("m1/remarks.jsonl"));
     assert_eq!(note("P03", "has not come").code, 0, "a label of the assignment");
     assert_eq!(note("P02", "left early").code, 0);

@@ -319,7 +319,9 @@ fn a_trajectory_becomes_a_run_in_the_same_state() {
         .expect("a file");
     let lines = lines.to_string_lossy().into_owned();
     other.run(&["runs", "import", "--transcript", &lines]).fails(2, &["--seed"]);
-    other.run(&["runs", "import", "--transcript", &lines, "--seed", "3"]).fails(1, &["differs from the transcript"]);
+    other
+        .run(&["runs", "import", "--transcript", &lines, "--seed", "3"])
+        .fails(1, &["differs from the transcript"]);
     other.run(&["runs", "import", "--transcript", "nothing.json"]).fails(1, &["nothing.json"]);
     other.run(&["runs", "import", "--seed", "3", "run.nmrun"]).fails(2, &["--transcript"]);
 }

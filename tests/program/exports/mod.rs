@@ -438,7 +438,11 @@ fn sessions_are_summed_up_and_runs_compared() {
 #[test]
 fn the_documents_say_what_the_program_says() {
     let said = Home::new().run(&["runs", "columns"]);
-    assert_eq!(said.out, include_str!("../../../assets/columns.md"), "write it again with: novamind runs columns");
+    assert_eq!(
+        said.out,
+        include_str!("../../../assets/columns.md"),
+        "write it again with: novamind runs columns"
+    );
     let page = include_str!("../../../docs/formats/trajectory.md");
     let examples: Vec<Value> = page
         .lines()

@@ -265,7 +265,7 @@ fn what_is_read_is_not_replaced_by_what_is_written() {
     let place = |name: &str| home.0.path().join(name).to_string_lossy().into_owned();
     let twice = place("./rows");
     for places in [&["--out", &file][..], &["--svg", &file], &["--out", &place("rows"), "--svg", &twice]] {
-        home.run(&[&["lab", "study", &file], places].concat()).fails(2, &["replace"]);
+        home.run(&[&["lab", "study", &file], places].concat()).fails(2, &["overwrit"]);
     }
     assert_eq!(fs::read_to_string(&file).expect("the study"), text);
     let folder = place("shards");

@@ -79,7 +79,7 @@ fn why_tells_the_causes_of_a_group_and_keeps_what_is_hidden() {
         };
         // The report on the week lists settings and changes, without causes.
         let (_, report) = played.split_once("> report").expect("a report");
-        assert!(report.contains("decided before it: price A: 12 → 40 $/month"), "{report}");
+        assert!(report.contains("decisions before it: price A: 12 → 40 $/month"), "{report}");
         for word in ["because", "due to", "cause", "may be", "led to", "thanks to", "blame"] {
             assert!(!report.contains(word), "{word}: {report}");
         }

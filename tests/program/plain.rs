@@ -317,7 +317,7 @@ fn weeks_and_runs_are_told() {
         "> report\nrefused no_week_yet: no week has run yet; next runs one\n",
         "> report\nweek to day 7: cash change -$",
         "capacity -$",
-        "decided before it: price A: 0 → 12 $/month",
+        "decisions before it: price A: 0 → 12 $/month",
         "forecast from 1 week ago: inside the interval, point ",
         "new: ",
         "> report run\n# NovaMind · run ",
@@ -407,13 +407,13 @@ fn the_views_of_the_xray_answer_in_words_and_as_data() {
     for (at, told) in [
         (7, "xray has no view qualty; did you mean quality?"),
         (8, "there is no group S9; did you mean S1 or S2 or S3?"),
-        (9, "name a group, and a day or none: xray quality S2 84"),
+        (9, "give a group and optionally a day: xray quality S2 84"),
         (10, "a whole number is expected"),
         (11, "there are no draws of servce; did you mean service or surge?"),
         (12, "choose a number of draws from 1 to 1000"),
         (13, "there is no day 8; choose a day from 1 to 7"),
         (14, "a whole number is expected"),
-        (15, "name a group, and a day or none: xray reputation S2 84"),
+        (15, "give a group and optionally a day: xray reputation S2 84"),
     ] {
         assert_eq!(answer(at)["error"], told, "{}", views[at]);
     }

@@ -96,7 +96,7 @@ fn a_check_names_what_a_session_of_this_length_cannot_do() {
     questionnaire("9");
     let told = lab.run("check", &[]);
     assert!(
-        told.code == 1 && told.out.contains("WRONG questions   questions/week.toml asks"),
+        told.code == 1 && told.out.contains("WRONG questions   questions/week.toml is due"),
         "{}",
         told.out
     );

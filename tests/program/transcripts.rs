@@ -357,7 +357,7 @@ fn weeks_of_a_replay_are_recorded_for_terminal_players() {
     let [first, last] =
         ["day 7", "day 21"].map(|part| at(part).unwrap_or_else(|| panic!("{part}: {seen:#?}")));
     assert!(first < last && last + 3 >= seen.len(), "{first} {last} of {}", seen.len());
-    home.run(&["replay", &run, "--cast", &file, "--week", "9"]).fails(2, &["week 9 is not recorded"]);
+    home.run(&["replay", &run, "--cast", &file, "--week", "9"]).fails(2, &["week 9 is not in the record"]);
     let said = home.run(&["replay", &run, "--cast", &file, "--week", "3..2"]);
     assert!(said.code == 2 && said.err.contains("20..24"), "{}", said.err);
     home.run(&["replay", &run, "--cast", "/nowhere/talk.cast"]).fails(1, &["/nowhere/talk.cast"]);

@@ -1,20 +1,20 @@
-//! NovaMind console: a terminal in which a person runs a simulated AI subscription company for 500 days, with exactly
-//! the information and controls that software agents get in the CEO-Bench benchmark.
+//! NovaMind console: a terminal program in which you run a simulated AI subscription company for 500 days, with exactly the
+//! information and controls that software agents get in the CEO-Bench benchmark.
 //!
 //! # Crates
 //!
-//! The root package holds the command line, [`cli`]. Its library re-exports the crates of the workspace for tests and for
-//! documentation. `docs/architecture.md` names what each crate contains and which crates it may import.
+//! The root package contains the command line, [`cli`]. Its library re-exports the crates of the workspace for tests and for
+//! documentation. `docs/architecture.md` lists the contents and the allowed imports of each crate.
 //!
-//! * A day is a list: [`world::day::step_day`] reads as the order of the day, one line per mechanism.
-//! * Mechanisms push facts ([`world::events`]); `database` turns them into rows, `voice` some into words.
-//! * A tool is data ([`tools::Spec`]) and a pure plan. A call is planned, its line is on the disk, then it is applied,
-//!   which cannot fail: memory is never ahead of the trajectory, the trajectory never ahead of what was confirmed.
-//! * What a player may see is decided in `database` and in tool answers; hidden state leaves a
-//!   session only through a [`session::Look`], in debug runs and once a run is over.
-//! * Numbers live in `configs/`; a scenario overrides some of them.
-//! * Chance is keyed, not stateful ([`world::random`]): same version, seed and actions give the same bits on any number
-//!   of threads and any machine.
+//! * [`world::day::step_day`] lists the steps of a day in order, one line per mechanism.
+//! * Mechanisms emit events ([`world::events`]); `database` turns them into rows, `voice` turns some into texts.
+//! * A tool is a specification ([`tools::Spec`]) and a pure plan. A call is planned, its line is written to disk, then it is
+//!   applied, which cannot fail. Memory is never ahead of the trajectory, and the trajectory never ahead of the confirmation.
+//! * `database` and the answers of tools decide what a player may see. Hidden state leaves a session only through a
+//!   [`session::Look`], in debug runs and finished runs.
+//! * Parameters are in `configs/`; a scenario overrides some of them.
+//! * Random draws depend on keys, not on generator state ([`world::random`]): the same version, seed and actions give the same
+//!   bits on any number of threads and any machine.
 //!
 //! # A week in ten lines
 //!

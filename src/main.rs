@@ -1,12 +1,12 @@
-//! Parse arguments, call `cli`, map failures to exit codes. Nothing else.
+//! Parses the arguments, calls `cli`, and maps failures to exit codes.
 
 use std::process::ExitCode;
 
 use clap::Parser;
 use novamind::cli::{Arguments, run};
 
-/// A day takes and gives back thousands of pieces of memory on several threads; with the usual allocator a run of 500
-/// days takes 7 % longer and asks the system for twice as many pages.
+/// A day allocates and frees thousands of blocks on several threads. With the default allocator a run of 500 days takes 7 %
+/// longer and requests twice as many pages from the system.
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 

@@ -1,6 +1,6 @@
-//! The program is rebuilt when a file is added to the folders that are compiled in: the compiler only tracks files that were there.
+//! Rebuilds the program when a file is added to an embedded folder, because the compiler only tracks existing files.
 
-/// Folders whose contents are compiled in, with everything below them.
+/// Folders that are embedded with all their contents.
 const COMPILED_IN: [&str; 2] = ["assets", "configs"];
 
 fn main() {

@@ -1,5 +1,5 @@
-//! Scenarios, lessons, themes, policies and grids that came with the program: every file of their folders in `configs/`, compiled in.
-//! A new one needs no line of code.
+//! Bundled scenarios, lessons, themes, policies and grids: all files of their folders in `configs/`, embedded in the program. A new
+//! file needs no code.
 
 use include_dir::{Dir, include_dir};
 
@@ -14,27 +14,27 @@ static GRIDS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../configs/grids");
 static LESSONS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../configs/lessons");
 static LESSON_TEXTS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../assets/lessons");
 
-/// The scenarios, by name.
+/// Returns the scenarios, by name.
 pub fn scenarios() -> Vec<Shipped> {
     of(&SCENARIOS)
 }
 
-/// The themes, by name.
+/// Returns the themes, by name.
 pub fn themes() -> Vec<Shipped> {
     of(&THEMES)
 }
 
-/// The policies, by name.
+/// Returns the policies, by name.
 pub fn policies() -> Vec<Shipped> {
     of(&POLICIES)
 }
 
-/// The grids of policies, by name.
+/// Returns the grids of policies, by name.
 pub fn grids() -> Vec<Shipped> {
     of(&GRIDS)
 }
 
-/// The lessons, by name, in the order of the course.
+/// Returns the lessons, by name, in the order of the course.
 pub fn lessons() -> Vec<Shipped> {
     let mut lessons = of(&LESSONS);
     let place = |name: &str| COURSE.iter().position(|own| *own == name).unwrap_or(COURSE.len());
@@ -42,12 +42,12 @@ pub fn lessons() -> Vec<Shipped> {
     lessons
 }
 
-/// The texts of a lesson.
+/// Returns the texts of a lesson.
 pub fn lesson_texts(name: &str) -> Option<&'static str> {
     LESSON_TEXTS.get_file(format!("{name}.md"))?.contents_utf8()
 }
 
-/// The lessons in the order in which a course takes them.
+/// The lessons in the order of the course.
 const COURSE: [&str; 12] = [
     "price-follows-quality",
     "price-of-the-quarter",

@@ -1,4 +1,4 @@
-//! `novamind bench`: the speed of this machine's simulator.
+//! `novamind bench`: measures the speed of the simulator on this machine.
 
 mod console;
 #[cfg(feature = "server")]
@@ -16,22 +16,21 @@ use crate::lab::bench::{Bench, BenchFigure, CASES, Case, Samples, Unit, Verdict,
 use crate::notation::grouped;
 use crate::statistics::median;
 
-/// Options of `bench`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Repetitions; the middle one counts.
+    /// Number of repetitions; the median is reported
     #[arg(long, default_value = "5", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100))]
     runs: u32,
-    /// Only this case; can be repeated.
+    /// Measure only this case; can be repeated
     #[arg(long, value_name = "NAME", value_parser = every_case().map(|case| case.name).collect::<Vec<_>>())]
     only: Vec<String>,
-    /// One repetition, and nothing that takes minutes.
+    /// Run one repetition, and skip cases that take minutes
     #[arg(long, conflicts_with = "runs")]
     quick: bool,
-    /// Folder for the runs that are measured [default: the system's folder for temporary files].
+    /// Folder for the measured runs [default: the system's temporary folder]
     #[arg(long, value_name = "DIR")]
     folder: Option<PathBuf>,
-    /// Print as JSON.
+    /// Print as JSON
     #[arg(long)]
     json: bool,
     /// Measure one case in this process and print its samples.
@@ -39,7 +38,6 @@ pub struct Options {
     measure: bool,
 }
 
-/// Everything that is measured.
 fn every_case() -> impl Iterator<Item = &'static Case> {
     #[cfg(feature = "server")]
     let served = http::CASES;
@@ -61,14 +59,12 @@ impl Options {
     }
 }
 
-/// A measured row.
 struct Row {
     case: &'static str,
     figure: &'static BenchFigure,
     samples: Vec<f64>,
 }
 
-/// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let scratch = Scratch::make(options.folder.as_deref())?;
     let cases = options.cases();
@@ -103,7 +99,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     if options.json { print(&(as_json(&rows, calibration) + "\n")) } else { Ok(()) }
 }
 
-/// A folder that is removed in the end.
+/// A temporary folder that is removed when it is dropped.
 struct Scratch(PathBuf);
 
 impl Scratch {
@@ -122,7 +118,7 @@ impl Drop for Scratch {
     }
 }
 
-/// Measures in this process and prints the samples of each case for the process that asked.
+/// Measures in this process and prints the samples of each case for the parent process.
 fn measure_here(cases: &[&Case], bench: &Bench) -> Result<(), Failure> {
     for case in cases {
         let samples = (case.measure)(bench).map_err(|error| Failure::failed(error.to_string()))?;
@@ -131,7 +127,7 @@ fn measure_here(cases: &[&Case], bench: &Bench) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Measures a case in processes of its own, for peak memory counts for a whole process.
+/// Measures a case in child processes, because peak memory is a figure of the whole process.
 fn measure(case: &Case, repetitions: usize, scratch: &Path) -> Result<Samples, Failure> {
     let (processes, each) = if case.fresh { (repetitions, 1) } else { (1, repetitions) };
     let mut all: Samples = vec![Vec::new(); case.figures.len()];
@@ -154,7 +150,7 @@ fn measure_apart(case: &Case, repetitions: usize, scratch: &Path) -> Result<Samp
         .output()
         .map_err(|error| failed(error.to_string()))?;
     if !output.status.success() {
-        return Err(failed("it could not be measured".to_owned()));
+        return Err(failed("the measurement failed".to_owned()));
     }
     serde_json::from_slice(&output.stdout).map_err(|error| failed(error.to_string()))
 }
@@ -196,13 +192,13 @@ fn line(row: &Row, calibration: f64) -> String {
     text.trim_end().to_owned() + "\n"
 }
 
-/// A value with its sign, to about three digits.
+/// Formats a value with its sign, to about three digits.
 fn amount(value: f64, unit: Unit) -> String {
     let decimals = if value < 10.0 { 2 } else { usize::from(value < 100.0) };
     format!("{} {}", grouped(value, decimals), unit.sign())
 }
 
-/// How often the calibration loop would fit into a time.
+/// Returns a time divided by the time of the calibration loop.
 fn ratio(value: Option<f64>, unit: Unit, calibration: f64) -> Option<f64> {
     Some(value? * unit.seconds()? / calibration)
 }

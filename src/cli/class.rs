@@ -1,4 +1,4 @@
-//! `novamind class`: hand out a lesson or a run to students, collect what comes back, and show it.
+//! `novamind class`: hand out a lesson or a run to students, collect their submissions, and show the results.
 
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -23,7 +23,6 @@ use crate::report::count;
 use crate::worker::request::Request;
 use novamind_course::{Class, ClassCollection, ClassSources, CollectedClass, ToHandOut};
 
-/// Options of `class`.
 #[derive(Debug, Args)]
 pub struct Options {
     #[command(subcommand)]
@@ -32,56 +31,54 @@ pub struct Options {
 
 #[derive(Debug, Subcommand)]
 enum ClassCommand {
-    /// Make a hand-out for every student: a lesson, or a run up to the end of its last week.
+    /// Create a handout for each student, with a lesson or with a run up to the end of its last week
     New {
-        /// Name of the lesson, or path of its file.
+        /// Name of the lesson, or path of its file
         #[arg(required_unless_present = "from", conflicts_with = "from")]
         lesson: Option<String>,
-        /// Hand out a run instead, or `latest`: the newest. Every student goes on with a branch of it.
+        /// Hand out a run instead, or `latest` for the newest; each student continues a branch of it
         #[arg(long, value_name = "RUN")]
         from: Option<String>,
-        /// How many students, from 1 to 999.
+        /// Number of students, from 1 to 999
         #[arg(long, value_name = "N")]
         students: u32,
-        /// Folder of the class.
+        /// Folder of the class
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
     },
-    /// Collect what came back: check it, and write class.csv and class-columns.csv into the folder of the class.
+    /// Collect and check the submissions; write class.csv and class-columns.csv to the folder of the class
     Collect {
-        /// Folder of the class.
+        /// Folder of the class
         folder: PathBuf,
-        /// Folders of runs of the machines, and archives; they are searched with all that lies below [default: the folder of
-        /// the class].
+        /// Folders of runs and archives; subfolders are searched, too [default: the folder of the class]
         #[arg(value_name = "PLACE")]
         places: Vec<PathBuf>,
     },
-    /// Show what was collected: ranking, curves, decisions, guesses, pitfalls.
+    /// Show the collected results: ranking, curves, decisions, guesses, pitfalls
     Show {
-        /// Folder of the class.
+        /// Folder of the class
         folder: PathBuf,
-        /// The student whose curve is lit [default: the first of the ranking].
+        /// Student whose curve is highlighted [default: the first in the ranking]
         #[arg(long, value_name = "LABEL")]
         student: Option<String>,
-        /// Decision of the scatter, for instance "price A" [default: the one in which students differ most].
+        /// Decision in the scatter plot, for example "price A" [default: the one in which students differ most]
         #[arg(long, value_name = "NAME")]
         decision: Option<String>,
-        /// Figure of the scatter, for instance subscribers [default: cash].
+        /// Figure in the scatter plot, for example subscribers [default: cash]
         #[arg(long, value_name = "NAME")]
         figure: Option<String>,
-        /// Show ranks instead of labels, and nothing that names a student.
+        /// Show ranks instead of labels, and nothing that identifies a student
         #[arg(long)]
         hide_names: bool,
-        /// Write one page for the projector to this file, without scripts.
+        /// Write a page for a projector to this file, without scripts
         #[arg(long, value_name = "FILE")]
         html: Option<PathBuf>,
-        /// Print it at a terminal, too, instead of opening the screen.
+        /// Print text at a terminal instead of opening the screen
         #[arg(long, conflicts_with = "html")]
         text: bool,
     },
 }
 
-/// Runs the command.
 pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
     match options.command {
         ClassCommand::New { lesson, from, students, out } => {
@@ -92,7 +89,7 @@ pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
                     context.look(&folder, "class", "hand out")?;
                     ToHandOut::Run(folder)
                 }
-                (None, None) => return Err(Failure::usage("name a lesson, or a run with --from")),
+                (None, None) => return Err(Failure::usage("name a lesson, or a run with --from RUN")),
             };
             new(&what, students, &out)
         }
@@ -112,7 +109,7 @@ fn new(what: &ToHandOut, students: u32, out: &Path) -> Result<(), Failure> {
     let (first, last) = (class.students.first(), class.students.last());
     let names = first.zip(last).map(|(first, last)| format!("{}.nm to {}.nm", first.label, last.label));
     print(&format!(
-        "class {}: {} for {} in {}\nA student plays with: novamind play --handout {}.nm\nWhat comes back is collected with: \
+        "class {}: {} for {} in {}\nTo play, a student runs: novamind play --handout {}.nm\nTo collect the submissions, run: \
          novamind class collect {} PLACES\n",
         class.class,
         names.unwrap_or_default(),
@@ -147,18 +144,17 @@ fn collect(folder: &Path, places: &[PathBuf]) -> Result<(), Failure> {
         write_whole(&folder.join(file), as_csv(&table)?.as_bytes())?;
     }
     print(&format!(
-        "{}class.csv and class-columns.csv are in {}; `novamind class show {}` shows the class\n",
+        "{}class.csv and class-columns.csv are in {}; `novamind class show {}` shows the results\n",
         collected_in_words(&view),
         folder.display(),
         folder.display()
     ))?;
     match collection.findings.len() as u32 {
         0 => Ok(()),
-        findings => Err(Failure::failed(format!("{} to look into", count(findings, "finding")))),
+        findings => Err(Failure::failed(format!("{} to check", count(findings, "finding")))),
     }
 }
 
-/// Shows a class: as a page, as text, or on the screen of the console.
 fn show(folder: &Path, shown: Shown, html: Option<&Path>, screen: Option<&Context>) -> Result<(), Failure> {
     let class = CollectedClass::read(folder)?;
     let view = ClassView::of(&class, shown);

@@ -6,7 +6,7 @@ use crate::lab;
 use crate::record::error::RunError;
 use crate::tools::Refusal;
 
-/// Why a command did not do what it was asked.
+/// The reason why a command failed, with its exit code. An empty message prints nothing.
 #[derive(Debug)]
 pub struct Failure {
     /// Exit code.
@@ -15,48 +15,48 @@ pub struct Failure {
 }
 
 impl Failure {
-    /// It was tried and failed: 1.
+    /// The operation failed: exit code 1.
     pub fn failed(message: impl Into<String>) -> Failure {
         Failure { code: 1, message: message.into() }
     }
 
-    /// It was asked for wrongly: 2.
+    /// The command line is wrong: exit code 2.
     pub fn usage(message: impl Into<String>) -> Failure {
         Failure { code: 2, message: message.into() }
     }
 
-    /// A run, file or configuration cannot be read: 3.
+    /// A run, file or configuration cannot be read: exit code 3.
     pub fn unreadable(message: impl Into<String>) -> Failure {
         Failure { code: 3, message: message.into() }
     }
 
-    /// A run ended in bankruptcy and the caller wanted to know: 4.
+    /// A run ended in bankruptcy and `--fail-on-bankruptcy` was given: exit code 4.
     pub fn bankrupt() -> Failure {
         Failure { code: 4, message: String::new() }
     }
 
-    /// Stopped by a signal: 128 + its number.
+    /// A signal ended the command: exit code 128 plus its number.
     pub fn signal(number: i32) -> Failure {
         Failure { code: 128u8.saturating_add(number as u8), message: String::new() }
     }
 
-    /// Nobody reads on; nothing is said.
+    /// The reader of standard output has gone away: exit code 0, no message.
     pub fn quiet() -> Failure {
         Failure { code: 0, message: String::new() }
     }
 
-    /// An exit code of a command's own, with words.
+    /// A failure with an exit code that is specific to the command.
     #[cfg(feature = "server")]
     pub fn with_code(code: u8, message: impl Into<String>) -> Failure {
         Failure { code, message: message.into() }
     }
 
-    /// The same failure with what it is about before its words.
+    /// Prefixes the message with its subject.
     pub fn about(self, subject: &str) -> Failure {
         Failure { message: format!("{subject}: {}", self.message), ..self }
     }
 
-    /// An exit code without words of its own.
+    /// An exit code without a message.
     pub fn code_only(code: u8) -> Failure {
         Failure { code, message: String::new() }
     }
@@ -110,7 +110,7 @@ impl From<lab::experiment::ExperimentError> for Failure {
         match error {
             Run { error, .. } => Failure { message, ..(*error).into() },
             Store { .. } => Failure::failed(message),
-            // As a shell counts ctrl-c.
+            // The exit code of a shell after ctrl-c.
             Stopped { .. } => Failure { code: 130, message },
         }
     }

@@ -1,4 +1,4 @@
-//! `novamind keys`: every action of the console and its keys.
+//! `novamind keys`: every action of the console with its keys.
 
 use clap::Args;
 
@@ -6,15 +6,13 @@ use super::{Context, Failure, print};
 use crate::console::keys::Keys;
 use crate::console::manual;
 
-/// Options of `keys`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Print as a table in Markdown.
+    /// Print as a Markdown table
     #[arg(long)]
     markdown: bool,
 }
 
-/// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let keys = Keys::of_user(&context.configuration).map_err(Failure::unreadable)?;
     print(&if options.markdown { manual::markdown(&keys) } else { manual::text(&keys) })

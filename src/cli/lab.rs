@@ -1,4 +1,4 @@
-//! `novamind lab`: comparison with reference figures, and of runs with each other.
+//! `novamind lab`: experiments with policies, and comparisons of runs with each other and with published figures.
 
 mod ablate;
 mod baseline;
@@ -35,7 +35,6 @@ use crate::lab::{
     Collector, Figure, GoldenComparison, Policy, Reference, RunSpec, compare, play, read_reference,
 };
 
-/// Options of `lab`.
 #[derive(Debug, Args)]
 pub struct Options {
     #[command(subcommand)]
@@ -44,62 +43,62 @@ pub struct Options {
 
 #[derive(Debug, Subcommand)]
 enum Laboratory {
-    /// Play the paper's 24 rule-based configurations, or a grid of your own, over many seeds.
+    /// Play the paper's 24 rule-based configurations, or another grid, over many seeds
     Baseline(baseline::Options),
-    /// Play a policy against rivals that copy more and more, and tell what each step costs.
+    /// Play a policy against competitors that copy more and more, and show the cost of each step
     Ablate(ablate::Options),
-    /// Reckon the paper's upper bound from the parameters, line by line beside the published account.
+    /// Compute the paper's upper bound from the parameters, line by line next to the published figures
     Bound(bound::Options),
-    /// Show every distribution that the world draws from: law, parameters, draws, moments.
+    /// Show every distribution that the simulator draws from: parameters, sample draws, moments
+    #[command(name = "distributions", alias = "laws")]
     Laws(laws::Options),
-    /// Draw participation curves: how much quality customers require at a price.
+    /// Draw participation curves: the quality that customers require at a price
     Curves(curves::Options),
-    /// Run the policies of a reference folder over many seeds and compare with its figures.
+    /// Run the policies of a reference folder over many seeds and compare with its figures
     Golden(Golden),
-    /// Play policies and tell how often the intervals of naive forecasts held.
+    /// Play policies and measure the coverage of naive forecasts
     Forecasts(forecasts::Options),
-    /// Put runs side by side: cash by week, decisions, behaviour measures, and the paper's published figures.
+    /// Compare runs: cash by week, decisions, behavior measures, and the paper's published figures
     Compare(comparison::Options),
-    /// Set own runs beside the published results: bankruptcies, best run, lives, calls a week.
+    /// Compare your runs with the published results: bankruptcies, best run, days survived, calls per week
     Table(results::Options),
-    /// Tell how runs were played: ads, forecasts, tools, notes, customers, cash.
+    /// Show how runs were played: ads, forecasts, tools, notes, customers, cash
+    #[command(name = "behavior", alias = "behaviour")]
     Behaviour(behaviour::Options),
-    /// Try by playing whether two policies with the same seed have the same luck.
+    /// Play two policies on the same seed and check that they get the same random draws
     Consistency(consistency::Options),
-    /// Print the figures of a run day by day, hidden ones included: a debug run, or one that is over.
+    /// Print all figures of a run day by day, hidden ones included; for debug runs and finished runs
     Metrics(metrics::Options),
-    /// Play the strong policies and the baseline in the world of a run that is over.
+    /// Play the strong policies and the baseline with the seed and parameters of a finished run
     Opponents(opponents::Options),
-    /// Play policies by scenarios by parameters by seeds into one tidy table, whole or in shards.
+    /// Play all combinations of policies, scenarios, parameters and seeds into one tidy table, whole or in shards
     Study(study::Options),
-    /// Put the shards of a study together.
+    /// Merge the shards of a study
     Merge(study::MergeOptions),
-    /// Tell what differs between two runs on a day: parts of the state, figures, customers.
+    /// Show the differences between two runs on a day: parts of the state, figures, customers
     Diff(difference::Options),
 }
 
-/// Options of `lab golden`.
 #[derive(Debug, Args)]
 struct Golden {
-    /// Folder with one <policy>.csv per policy.
+    /// Folder with one <policy>.csv per policy
     folder: PathBuf,
-    /// Folder of policy files [default: the reference folder, else the shipped ones].
+    /// Folder of policy files [default: the reference folder, otherwise the bundled policies]
     #[arg(long, value_name = "DIR")]
     policies: Option<PathBuf>,
-    /// Seeds, at least 24; suspicious figures are run again on as many of the seeds that follow.
+    /// Seeds, at least 24; suspicious figures are rerun on the same number of subsequent seeds
     #[arg(long, default_value = "1..24", value_name = "A..B", value_parser = parse_seeds)]
     seeds: Seeds,
-    /// Only this policy; can be repeated.
+    /// Only this policy; can be repeated
     #[arg(long, value_name = "NAME")]
     only: Vec<String>,
-    /// Figures to leave out, for instance those of mechanics not built yet; a name ending in * stands for all
-    /// names that begin with it.
+    /// Figures to leave out; a name ending in * matches every name with that prefix
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     without: Vec<String>,
-    /// Seeds played at the same time.
+    /// Number of seeds to play in parallel
     #[arg(long, value_name = "N")]
     jobs: Option<usize>,
-    /// Print every compared cell.
+    /// Print every compared cell
     #[arg(long)]
     all: bool,
 }
@@ -109,7 +108,6 @@ const SHARE_OF_POLICY: f64 = 0.95;
 /// Lowest accepted share of |z| < 3 over all policies.
 const SHARE_OF_ALL: f64 = 0.97;
 
-/// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     match &options.command {
         Laboratory::Baseline(options) => baseline::run(options, context),
@@ -151,7 +149,7 @@ fn run_golden(golden: &Golden, context: &Context) -> Result<(), Failure> {
     for name in &names {
         let mut reference = read_reference(&golden.folder, name)?;
         reference.cells.retain(|(figure, group, _), _| !left_out(&golden.without, figure, group));
-        // One policy that is missing or wrong does not hide what the others have to say.
+        // A policy that cannot be played does not hide the results of the others.
         let policy = match find_policy(golden, context, name) {
             Ok(policy) => policy,
             Err(failure) => {
@@ -188,7 +186,7 @@ fn policies_of(folder: &Path, only: &[String]) -> Result<Vec<String>, Failure> {
         .collect();
     names.sort_unstable();
     if names.is_empty() {
-        return Err(Failure::usage(format!("{} holds no figures of these policies", folder.display())));
+        return Err(Failure::usage(format!("{} has no figures of these policies", folder.display())));
     }
     Ok(names)
 }
@@ -203,7 +201,7 @@ fn find_policy(golden: &Golden, context: &Context, name: &str) -> Result<Policy,
     Ok(Policy::find(name, &context.configuration)?)
 }
 
-/// Figures of every seed at the checkpoint days of a reference.
+/// Returns the figures of every seed at the checkpoint days of a reference.
 fn figures(
     policy: &Policy,
     reference: &Reference,
@@ -231,8 +229,8 @@ fn figures(
     all
 }
 
-/// Runs the following seeds for figures that look biased: (figure, first median, second median) of those that
-/// are off to the same side again.
+/// Reruns suspicious figures on the subsequent seeds. Returns (figure, first median, second median) of those that deviate in the
+/// same direction again.
 fn confirm(
     comparison: &GoldenComparison,
     policy: &Policy,
@@ -282,9 +280,11 @@ fn describe(verdict: &Verdict, all: bool) -> String {
         let again = verdict.biased.iter().find(|(biased, ..)| *biased == figure);
         text += &match again {
             Some((.., second)) => {
-                format!("  biased: {figure}, median z {first:.2} and {second:.2} on the following seeds\n")
+                format!("  biased: {figure}, median z {first:.2} and {second:.2} on the subsequent seeds\n")
             }
-            None => format!("  suspicious: {figure}, median z {first:.2}, not so on the following seeds\n"),
+            None => format!(
+                "  suspicious: {figure}, median z {first:.2}, not confirmed on the subsequent seeds\n"
+            ),
         };
     }
     for name in &comparison.missing {
@@ -309,7 +309,7 @@ fn conclude(verdicts: &[Verdict], unplayed: &[&str], seeds: &Seeds) -> Result<()
         seeds.last
     ))?;
     if seeds.last - seeds.first + 1 < 24 {
-        return Err(Failure::usage("a verdict needs at least 24 seeds"));
+        return Err(Failure::usage("a comparison needs at least 24 seeds"));
     }
     let failing = verdicts.iter().filter(|verdict| !verdict.passes());
     let mut problems: Vec<String> =

@@ -1,4 +1,4 @@
-//! `novamind lesson`: the lessons, and whether they hold what they promise.
+//! `novamind lesson`: list, show, copy, play and check lessons.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -17,7 +17,6 @@ use crate::report::{debrief_as_html, debrief_as_markdown};
 use crate::rules::answers_to_companies;
 use crate::session::Session;
 
-/// Options of `lesson`.
 #[derive(Debug, Args)]
 pub struct Options {
     #[command(subcommand)]
@@ -26,48 +25,46 @@ pub struct Options {
 
 #[derive(Debug, Subcommand)]
 enum LessonCommand {
-    /// List all lessons.
+    /// List all lessons
     List,
-    /// Show what a lesson asks, and what its instructor should know.
+    /// Show the task of a lesson and the notes for its instructor
     Show {
-        /// Name of the lesson, or path of its file.
+        /// Name of the lesson, or path of its file
         lesson: String,
     },
-    /// Write the two files of a lesson under another name, to make a lesson of your own of them.
+    /// Copy the two files of a lesson under another name, to edit it into your own
     Copy {
-        /// Name of the lesson, or path of its file.
+        /// Name of the lesson, or path of its file
         lesson: String,
-        /// A name, for the folder of your lessons, or the path of a file that ends in .toml.
+        /// A name, for your folder of lessons, or the path of a file that ends in .toml
         to: String,
     },
-    /// Play a lesson.
+    /// Play a lesson
     Play {
-        /// Name of the lesson, or path of its file.
+        /// Name of the lesson, or path of its file
         #[arg(id = "name", value_name = "LESSON")]
         name: String,
         #[command(flatten)]
         play: Box<super::play::Options>,
     },
-    /// Tell what came of a part of a lesson that is over, beside the good and the bad play.
+    /// Compare a finished part of a lesson with the reference play and the play that meets the pitfall
     Debrief {
-        /// Run, or `latest`: the newest.
+        /// Run, or `latest` for the newest
         run: String,
-        /// Write it to this file as one page for a browser.
+        /// Write the debrief to this file as a web page
         #[arg(long, value_name = "FILE", conflicts_with = "markdown")]
         html: Option<PathBuf>,
-        /// Write it to this file as Markdown.
+        /// Write the debrief to this file as Markdown
         #[arg(long, value_name = "FILE")]
         markdown: Option<PathBuf>,
     },
-    /// Play the reference plays of lessons on six seeds: the good one reaches every goal, the bad one meets its pitfall, and
-    /// the figures that texts name hold.
+    /// Play the reference plays of lessons on six seeds: check goals, pitfalls, and the figures that the texts name
     Check {
-        /// Name of a lesson, or path of its file; all lessons if none is named.
+        /// Name of a lesson, or path of its file [default: all lessons]
         lesson: Option<String>,
     },
 }
 
-/// Runs the command.
 pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
     let configuration = &context.configuration;
     match options.command {
@@ -83,41 +80,42 @@ pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
     }
 }
 
-/// Writes the files of a lesson under another name.
 fn copy(lesson: &str, to: &str, configuration: &Configuration) -> Result<(), Failure> {
     let from = lesson_of(lesson, configuration)?;
     let path = match is_file(to) {
         true => PathBuf::from(to),
         false if configuration.lessons().iter().any(|known| known == to) => {
-            return Err(Failure::usage(format!("there is a lesson {to} already: choose another name")));
+            return Err(Failure::usage(format!("lesson {to} already exists: choose another name")));
         }
         false
             if to.is_empty() || !to.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_')) =>
         {
-            return Err(Failure::usage(format!("{to:?}: the name of a lesson has letters, digits, - and _")));
+            return Err(Failure::usage(format!(
+                "{to:?}: a lesson name may contain letters, digits, - and _"
+            )));
         }
-        false => configuration
-            .own_lesson(to)
-            .ok_or_else(|| Failure::usage("there is no folder of configuration: name the path of a file"))?,
+        false => configuration.own_lesson(to).ok_or_else(|| {
+            Failure::usage("this system has no configuration folder: give the path of a file")
+        })?,
     };
     if path.extension().is_none_or(|ending| ending != "toml") {
-        return Err(Failure::usage(format!("{to}: the file of a lesson ends in .toml")));
+        return Err(Failure::usage(format!("{to}: the name of a lesson file must end in .toml")));
     }
     from.copy_to(&path)?;
     let name = if is_file(to) { path.display().to_string() } else { to.to_owned() };
     print(&format!(
-        "written: {} and {}\nchange them, then: novamind lesson check {name}\n",
+        "wrote {} and {}\nedit them, then run: novamind lesson check {name}\n",
         path.display(),
         path.with_extension("md").display()
     ))
 }
 
-/// Whether a word is the path of a file and no name.
+/// Returns whether a word is the path of a file rather than a name.
 fn is_file(name: &str) -> bool {
     Path::new(name).components().count() > 1 || name.ends_with(".toml")
 }
 
-/// A lesson by its name, or by the path of its file.
+/// Finds a lesson by its name or by the path of its file.
 pub(super) fn lesson_of(name: &str, configuration: &Configuration) -> Result<Lesson, Failure> {
     Ok(if is_file(name) { Lesson::of_file(Path::new(name))? } else { Lesson::named(name, configuration)? })
 }
@@ -130,7 +128,7 @@ fn list(configuration: &Configuration) -> Result<(), Failure> {
                 let plan = &lesson.plan;
                 text += &format!("{name:<24}  {:>3} min  {}\n", plan.minutes, plan.title);
             }
-            // One wrong file does not hide the others.
+            // One invalid file does not hide the others.
             Err(error) => unreadable.push(error.to_string()),
         }
     }
@@ -138,7 +136,7 @@ fn list(configuration: &Configuration) -> Result<(), Failure> {
     if unreadable.is_empty() { Ok(()) } else { Err(Failure::unreadable(unreadable.join("\n"))) }
 }
 
-/// Tells the debrief of a run, or writes it to a file; nothing of the run is changed.
+/// Prints the debrief of a run, or writes it to a file. Does not modify the run.
 fn debrief(
     run: &str,
     html: Option<PathBuf>,
@@ -159,7 +157,7 @@ fn debrief(
     print(&format!("written: {}\n", path.display()))
 }
 
-/// A lesson for its instructor.
+/// Returns a lesson with its notes for the instructor.
 fn shown(lesson: &Lesson) -> String {
     let plan = &lesson.plan;
     let mut text = format!("{}\n{} minutes. {}\n", plan.title, plan.minutes, plan.learning_goal);
@@ -175,8 +173,8 @@ fn shown(lesson: &Lesson) -> String {
             }
         }
     }
-    text += &format!("\nGood play: {}\nBad play: {}\n", plan.good.text, plan.bad.text);
-    for (heading, own) in [("Debrief", &lesson.debrief), ("For the teacher", &lesson.for_teachers)] {
+    text += &format!("\nReference play: {}\nPitfall play: {}\n", plan.good.text, plan.bad.text);
+    for (heading, own) in [("Debrief", &lesson.debrief), ("For the instructor", &lesson.for_teachers)] {
         text += &format!("\n{heading}\n\n{}\n", lesson.filled(own));
     }
     text
@@ -194,14 +192,12 @@ fn check(names: &[String], configuration: &Configuration) -> Result<(), Failure>
     }
     match failed {
         0 => Ok(()),
-        failed => {
-            Err(Failure::failed(format!("{failed} of {} lessons do not hold what they promise", names.len())))
-        }
+        failed => Err(Failure::failed(format!("{failed} of {} lessons failed their check", names.len()))),
     }
 }
 
 fn checked(lesson: &Lesson, check: &LessonCheck, problems: &[String]) -> String {
-    let verdict = if problems.is_empty() { "holds" } else { "DOES NOT HOLD" };
+    let verdict = if problems.is_empty() { "passed" } else { "FAILED" };
     let mut text = format!(
         "{}: {verdict} on seeds {} to {}\n",
         lesson.name,
@@ -227,7 +223,7 @@ fn checked(lesson: &Lesson, check: &LessonCheck, problems: &[String]) -> String 
     text
 }
 
-/// What the plays have for a goal, by seed.
+/// Returns the values of a goal in the plays, by seed.
 fn values(plays: &[PlayResult], at: usize) -> String {
     let written = plays.iter().filter_map(|play| play.goals.get(at)).map(|goal| {
         let value = goal.value.map_or_else(|| "-".to_owned(), compact);

@@ -1,4 +1,4 @@
-//! `novamind mcp`: a run for a client of the Model Context Protocol.
+//! `novamind mcp`: serves a run to a client of the Model Context Protocol.
 
 use clap::Args;
 
@@ -6,17 +6,15 @@ use super::which_run::WhichRun;
 use super::{Context, Failure};
 use crate::server::{refuse_mcp, serve_mcp};
 
-/// Options of `mcp`.
 #[derive(Debug, Args)]
 pub struct Options {
     #[command(flatten)]
     which: WhichRun,
 }
 
-/// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let session = options.which.open(context).map_err(|failure| {
-        // A host shows either of them, and rarely both.
+        // Clients show either standard error or the protocol error, rarely both.
         eprintln!("novamind: {failure}");
         refuse_mcp(&failure.to_string());
         Failure::code_only(failure.code)

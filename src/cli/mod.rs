@@ -1,4 +1,4 @@
-//! The command line: one file per subcommand.
+//! The command line: one module per subcommand.
 
 #[cfg(feature = "server")]
 mod agent;
@@ -44,9 +44,9 @@ use crate::record::trajectory::Trajectory;
 use crate::session::{LabKey, ModelSettings, SealKey, record_look};
 use novamind_study::{STUDY_FILE, Study, lab_key_of, record_refused_code, seal_key_of};
 
-/// Run a simulated AI subscription company for 500 days.
+/// Run a simulated AI subscription company for 500 days
 ///
-/// Without a command the console opens. Every run is recorded completely and can be replayed to the same state.
+/// Without a command, the console opens. Every run is recorded completely and can be replayed to the same state.
 #[derive(Debug, Parser)]
 #[command(name = "novamind", version, max_term_width = 110)]
 pub struct Arguments {
@@ -54,69 +54,68 @@ pub struct Arguments {
     command: Option<Command>,
     #[command(flatten)]
     play: play::Options,
-    /// Folder of the runs [default: the platform's data folder].
+    /// Folder of the runs [default: the platform's data folder]
     #[arg(long, global = true, env = "NOVAMIND_RUNS", value_name = "DIR")]
     runs_dir: Option<PathBuf>,
-    /// Whose runs these are: they have a folder of their own and carry this label, and no others are shown.
+    /// Label of the player: their runs are in a separate folder, carry this label, and are the only ones shown
     #[arg(long = "as", global = true, env = "NOVAMIND_PARTICIPANT", value_name = "LABEL")]
     whose: Option<String>,
-    /// Folder of a study: participants get what its protocol gives them, and nothing else without its code.
+    /// Folder of a study: participants play by its protocol; all other commands need its code
     #[arg(long, global = true, env = "NOVAMIND_STUDY", value_name = "DIR")]
     study: Option<PathBuf>,
-    /// The experimenter's code of the study.
+    /// The experimenter's code of the study
     #[arg(long, global = true, env = "NOVAMIND_CODE", value_name = "CODE", hide_env_values = true)]
     code: Option<String>,
 }
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Open the console, or play line by line with --plain.
+    /// Open the console, or play line by line with --plain
     Play(play::Options),
-    /// Let a policy play, without a person.
+    /// Run a policy without a player
     Run(run::Options),
-    /// List, show, end, delete, export and import runs.
+    /// List, show, end, delete, export and import runs
     Runs(runs::Options),
-    /// Simulate a recorded run again and compare every state.
+    /// Replay a recorded run, or simulate it again and compare every state
     Replay(replay::Options),
-    /// Report on a run: result, curves, decisions, how it was played.
+    /// Report on a run: result, curves, decisions, and how it was played
     Report(report::Options),
-    /// Query the database of a run.
+    /// Query the database of a run
     Query(query::Options),
-    /// Show the catalogue of tools.
+    /// Show the catalog of tools
     Tools(tools::Options),
-    /// Show the tables that can be queried.
+    /// Show the tables that you can query
     Tables(tables::Options),
-    /// Show every key of the console.
+    /// Show every key of the console
     Keys(keys::Options),
-    /// Draw the screens of a run as text or SVG.
+    /// Draw the screens of a run as text or SVG
     Pictures(pictures::Options),
-    /// Show the scenarios and their parameters.
+    /// Show the scenarios and their parameters
     Scenario(scenario::Options),
-    /// List, show and check lessons.
+    /// List, show, play and check lessons
     Lesson(lesson::Options),
-    /// Hand out lessons and runs to students, collect what comes back, and show it.
+    /// Hand out lessons and runs to students, collect their submissions, and show the results
     Class(class::Options),
-    /// Set up studies with people: protocol, participants, checks.
+    /// Set up studies with people: protocol, participants, checks
     Study(study::Options),
-    /// Compare policies with reference figures, and runs with each other.
+    /// Run experiments with policies, and compare runs with each other and with published figures
     Lab(lab::Options),
-    /// Let a program that has only a shell play a run: begin, call, query, next week. `batch` lets a command play several.
+    /// Play a run from a shell, one command at a time, or run an agent on several runs with `batch`
     #[cfg(feature = "server")]
     Agent(agent::Options),
-    /// Let a program play a run over HTTP.
+    /// Serve a run to programs over HTTP
     #[cfg(feature = "server")]
     Serve(serve::Options),
-    /// Let a client of the Model Context Protocol play a run, on standard input and output.
+    /// Serve a run to a client of the Model Context Protocol on standard input and output
     #[cfg(feature = "server")]
     Mcp(mcp::Options),
-    /// Measure how fast this machine simulates.
+    /// Measure how fast this machine simulates
     Bench(bench::Options),
-    /// Print a completion script for a shell.
+    /// Print a completion script for a shell
     Completions(completions::Options),
 }
 
 impl Command {
-    /// The word for it.
     fn name(&self) -> &'static str {
         match self {
             Command::Play(_) => "play",
@@ -146,25 +145,25 @@ impl Command {
     }
 }
 
-/// What every command may need.
+/// Values that every command may need.
 #[derive(Clone)]
 pub struct Context {
-    /// Configuration of this person.
+    /// Configuration of the user.
     pub configuration: Configuration,
-    /// Folder of the runs, if one was named or the platform has one.
+    /// Folder of the runs, from the command line or the platform's default.
     runs: Option<PathBuf>,
-    /// Whose runs these are, if anybody's in particular.
+    /// Label of the player whose runs are used, from `--as`.
     pub participant: Option<String>,
-    /// The folder of runs was named on the command line.
+    /// Whether the folder of runs was given on the command line.
     names_runs: bool,
-    /// Folder of the study whose keys count: the one that was named, or the folder of work if it is a study.
+    /// Folder of the study whose keys are used: the one given, or the working directory if it is a study.
     pub study_folder: Option<PathBuf>,
-    /// The experimenter's code of a study was given with the command.
+    /// Whether the command has the experimenter's code of the study.
     pub is_experimenter: bool,
 }
 
 impl Context {
-    /// The command that goes on with the newest run of this folder.
+    /// Returns the command that continues the newest run of this folder.
     pub fn again(&self) -> String {
         let mut words = self.first_words();
         words.extend(self.participant.as_ref().map(|label| format!("--as {label}")));
@@ -172,7 +171,7 @@ impl Context {
         words.join(" ")
     }
 
-    /// The command that leads participants through a study once more: they give their label again.
+    /// Returns the command that continues a study; participants enter their label again.
     pub fn again_in_study(&self, study: &Path) -> String {
         let mut words = self.first_words();
         words.push(format!("--study {}", for_shell(study)));
@@ -186,23 +185,23 @@ impl Context {
         words
     }
 
-    /// The same for the student of a hand-out.
+    /// Returns this context for the student of a handout.
     ///
     /// # Errors
-    /// Somebody else was named with --as.
+    /// `--as` names another student.
     pub fn of_student(&self, label: &str) -> Result<Context, Failure> {
         match &self.participant {
             Some(whose) if whose != label => Err(Failure::usage(format!(
-                "this is the hand-out of {label}, not of {whose}: leave out --as {whose}"
+                "this handout belongs to {label}, not to {whose}: leave out --as {whose}"
             ))),
             _ => Ok(Context { participant: Some(label.to_owned()), ..self.clone() }),
         }
     }
 
-    /// The same with the language model that a file names, if one is named.
+    /// Returns this context with the language model of a settings file. Returns it unchanged if `file` is `None`.
     ///
     /// # Errors
-    /// The file cannot be read, or is wrong: line and key.
+    /// The file cannot be read or is invalid. The error names the line and the key.
     pub fn with_voice(&self, file: Option<&Path>) -> Result<Context, Failure> {
         let Some(file) = file else { return Ok(self.clone()) };
         let text = std::fs::read_to_string(file).map_err(RunError::io(file))?;
@@ -211,23 +210,23 @@ impl Context {
         Ok(Context { configuration, ..self.clone() })
     }
 
-    /// Checks that a participant who is named is the one whose runs these are.
+    /// Checks that `--participant` and `--as` do not name different people.
     ///
     /// # Errors
-    /// They are two.
+    /// They differ.
     pub fn check_participant(&self, named: Option<&str>) -> Result<(), Failure> {
         match (&self.participant, named) {
             (Some(whose), Some(named)) if whose != named => Err(Failure::usage(format!(
-                "--as {whose} and --participant {named} name two people: give one label, with --as"
+                "--as {whose} and --participant {named} name different people: give one label, with --as"
             ))),
             _ => Ok(()),
         }
     }
 
-    /// Folders of runs of several machines, or of this one where none is named.
+    /// Returns the named folders of runs, or the folder of this machine if none is named.
     ///
     /// # Errors
-    /// As [`Context::runs`].
+    /// A named folder does not exist; otherwise as [`Context::runs`].
     fn machines(&self, named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
         if let Some(missing) = named.iter().find(|folder| !folder.is_dir()) {
             let problem = format!("{} is not a folder; nothing was read", missing.display());
@@ -236,18 +235,18 @@ impl Context {
         if named.is_empty() { Ok(vec![self.runs()?]) } else { Ok(named.to_vec()) }
     }
 
-    /// What seals the snapshots of runs of the study besides the runs.
+    /// Returns the key that seals snapshots of the study's runs.
     ///
     /// # Errors
-    /// The key is there and cannot be read.
+    /// The key exists and cannot be read.
     fn seal_key(&self) -> Result<SealKey, Failure> {
         Ok(self.study_folder.as_deref().map(seal_key_of).transpose()?.unwrap_or_default())
     }
 
-    /// The key that signs archives: that of a file, or of the study.
+    /// Returns the key that signs archives, from a file or from the study.
     ///
     /// # Errors
-    /// It is there and cannot be read.
+    /// The key exists and cannot be read.
     fn lab_key(&self, named: Option<&Path>) -> Result<Option<LabKey>, Failure> {
         match (named, &self.study_folder) {
             (Some(file), _) => Ok(Some(LabKey::read(file)?)),
@@ -256,10 +255,10 @@ impl Context {
         }
     }
 
-    /// Refuses to show a run of which its study shows results to nobody but the experimenter.
+    /// Checks that the results of a run may be shown. Some studies show them to the experimenter only.
     ///
     /// # Errors
-    /// It is one, and no code was given; its manifest cannot be read.
+    /// The results are hidden and no code was given, or the manifest cannot be read.
     pub fn check_look(&self, folder: &Path) -> Result<(), Failure> {
         self.check_results_of(&manifest_of(folder)?)
     }
@@ -269,12 +268,12 @@ impl Context {
             return Ok(());
         }
         Err(Failure::usage(format!(
-            "run {} belongs to a study that shows no results of it: `--study DIR --code CODE` before the command opens it",
+            "run {} belongs to a study that hides its results: write `--study DIR --code CODE` before the command",
             manifest.id
         )))
     }
 
-    /// Shows a run to a command: refuses as [`Context::check_look`] does, and records that the run is read.
+    /// Checks access as [`Context::check_look`] does, and records that the run was read.
     ///
     /// # Errors
     /// As [`Context::check_look`] and [`record_look`].
@@ -283,10 +282,10 @@ impl Context {
         Ok(record_look(folder, command, detail)?)
     }
 
-    /// Refuses to play, or to watch, an unfinished run of a study outside of it.
+    /// Checks that a run is not an unfinished run of a study, which can only be played or watched within the study.
     ///
     /// # Errors
-    /// It is one, and no code was given; its manifest cannot be read.
+    /// It is one and no code was given, or the manifest cannot be read.
     pub fn check_play(&self, folder: &Path) -> Result<(), Failure> {
         let manifest = manifest_of(folder)?;
         let Some(study) = manifest.study.as_ref().filter(|_| !self.is_experimenter) else { return Ok(()) };
@@ -294,22 +293,22 @@ impl Context {
             return self.check_results_of(&manifest);
         }
         Err(Failure::usage(format!(
-            "run {} belongs to the study {}: `novamind --study DIR` goes on with it",
+            "run {} belongs to the study {}: continue it with `novamind --study DIR`",
             manifest.id, study.name
         )))
     }
 
-    /// Folder of the runs of all participants.
+    /// Returns the folder that contains the runs of all participants.
     ///
     /// # Errors
-    /// The platform has none and none was named.
+    /// The platform has no data folder and none was given.
     fn base_of_runs(&self) -> Result<PathBuf, Failure> {
         self.runs.clone().ok_or_else(|| {
-            Failure::usage("this system names no folder for data; name one with --runs-dir or NOVAMIND_RUNS")
+            Failure::usage("this system has no data folder; give one with --runs-dir or NOVAMIND_RUNS")
         })
     }
 
-    /// Folder in which the laboratory keeps what it has played: beside the runs, where no list of runs shows it.
+    /// Returns the folder of cached experiment results. It is hidden in the folder of runs, where no list shows it.
     ///
     /// # Errors
     /// As [`Context::runs`].
@@ -317,10 +316,10 @@ impl Context {
         Ok(self.base_of_runs()?.join(".lab"))
     }
 
-    /// Folder of the runs.
+    /// Returns the folder of the runs, of the participant if one was given.
     ///
     /// # Errors
-    /// The platform has none and none was named.
+    /// The platform has no data folder and none was given, or the label is invalid.
     pub fn runs(&self) -> Result<PathBuf, Failure> {
         let base = self.base_of_runs()?;
         match &self.participant {
@@ -330,26 +329,25 @@ impl Context {
     }
 }
 
-/// A path as a shell has to be told.
+/// Quotes a path for a shell.
 fn for_shell(path: &Path) -> String {
     let text = path.display().to_string();
     let plain = |letter: char| letter.is_alphanumeric() || "/._-".contains(letter);
     if text.chars().all(plain) { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
 }
 
-/// The folder of work, if it is that of a study.
+/// Returns the working directory if it is a study.
 fn study_here() -> Option<PathBuf> {
     Path::new(STUDY_FILE).is_file().then(|| PathBuf::from("."))
 }
 
-/// A write beyond the largest file that is allowed becomes an error, which is told as a full disk is; unheard, the signal would
-/// end the program.
+/// Turns a write beyond the file size limit into an error like that of a full disk. Unhandled, the signal would end the program.
 fn take_full_files_as_errors() {
     #[cfg(unix)]
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, std::sync::Arc::default());
 }
 
-/// A `--code` for the tool that an agent calls: without a study there is no code of one.
+/// Passes `--code` on to the tool that an agent calls if no study is given, because tools have arguments of that name, too.
 #[cfg(feature = "server")]
 fn with_code_for_tool(mut arguments: Arguments) -> Arguments {
     let own = arguments.code.clone().filter(|code| std::env::var("NOVAMIND_CODE").as_ref() != Ok(code));
@@ -363,7 +361,7 @@ fn with_code_for_tool(mut arguments: Arguments) -> Arguments {
 /// Runs a command.
 ///
 /// # Errors
-/// What went wrong, with the exit code that says so.
+/// The command failed. The error holds the exit code.
 pub fn run(arguments: Arguments) -> Result<(), Failure> {
     if let Some(command) = &arguments.command
         && arguments.play != play::Options::default()
@@ -435,10 +433,10 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     }
 }
 
-/// Writes to standard output; a reader that has gone away ends the program quietly.
+/// Writes to standard output. If the reader has gone away, the failure is quiet.
 ///
 /// # Errors
-/// Standard output fails.
+/// Standard output cannot be written.
 pub fn print(text: &str) -> Result<(), Failure> {
     use std::io::Write;
     let mut out = std::io::stdout().lock();

@@ -1,4 +1,4 @@
-//! The options of a new run, the same for people and for programs.
+//! Options of a new run, shared by all commands that create one.
 
 use clap::Args;
 
@@ -9,36 +9,34 @@ use crate::record::mode::Mode;
 #[cfg(feature = "server")]
 use crate::session::{Fault, NewRun, Storage, baseline_terms};
 
-/// What a new run is made of.
 #[derive(Debug, Args, Clone, Default, PartialEq)]
 pub struct NewRunOptions {
-    /// Seed of the new run.
+    /// Seed of the new run
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// Days of the new run, at least 7; a baseline run has 500.
+    /// Days of the new run, at least 7; baseline runs have 500
     #[arg(long, value_name = "N")]
     days: Option<u32>,
-    /// Starting cash of the new run, in dollars; a baseline run has 1000000.
+    /// Starting cash of the new run, in dollars; baseline runs start with 1000000
     #[arg(long, value_name = "X")]
     cash: Option<f64>,
-    /// Scenario of the new run; a baseline run has `default`.
+    /// Scenario of the new run; baseline runs use `default`
     #[arg(long, value_name = "NAME")]
     scenario: Option<String>,
-    /// Mode of the new run [default: baseline if a program plays it with the days, cash and scenario of a baseline run;
-    /// otherwise sandbox].
+    /// Mode of the new run [default: sandbox; for programs baseline, if days, cash and scenario are those of a baseline run]
     #[arg(long, value_name = "baseline|sandbox|debug", value_parser = parse_mode)]
     mode: Option<Mode>,
-    /// Who plays.
+    /// Label of the player
     #[arg(long, value_name = "LABEL")]
     participant: Option<String>,
-    /// The participant has agreed to the text in consent.md of the configuration folder.
+    /// Confirm that the participant agreed to the text in consent.md of the configuration folder
     #[arg(long)]
     consent: bool,
-    /// Set a parameter of a debug run; can be repeated.
+    /// Set a parameter of a debug run; can be repeated
     #[arg(long, value_name = "TABLE.KEY=VALUE", value_parser = parse_override)]
     set: Vec<(String, String)>,
-    /// Make one mechanism of a debug run wrong, without saying which.
-    #[arg(long, value_name = "N", value_parser = parse_fault)]
+    /// Seed one of the numbered faults into a debug run; the number is not shown during the run
+    #[arg(id = "planted", long = "fault", alias = "planted", value_name = "N", value_parser = parse_fault)]
     planted: Option<Fault>,
 }
 
@@ -46,29 +44,29 @@ fn parse_mode(text: &str) -> Result<Mode, String> {
     let mode = Mode::parse(text).filter(|mode| Mode::OFFERED.contains(mode));
     mode.ok_or_else(|| {
         let offered = Mode::OFFERED.map(Mode::id).join(", ");
-        format!("{text} is not a mode of a new run; the modes are {offered}")
+        format!("{text} is not a mode; the modes are {offered}")
     })
 }
 
 fn parse_fault(text: &str) -> Result<Fault, String> {
     let number = text.parse::<u32>().unwrap_or(0);
     Fault::try_from(number)
-        .map_err(|_| format!("{text} is no number of a fault; choose one from 1 to {}", Fault::ALL.len()))
+        .map_err(|_| format!("{text} is not the number of a fault; choose 1 to {}", Fault::ALL.len()))
 }
 
 impl NewRunOptions {
-    /// Whether any of them says something of a new run.
+    /// Returns whether any of these options is given.
     pub fn ask_for_one(&self) -> bool {
         NewRunOptions { consent: false, ..self.clone() } != NewRunOptions::default()
     }
 
-    /// Whether a scenario is asked for.
+    /// Returns whether a scenario is given.
     #[cfg(feature = "server")]
     pub fn names_scenario(&self) -> bool {
         self.scenario.is_some()
     }
 
-    /// The same, played by somebody of this label unless another was named.
+    /// Returns the options with a default label for the player.
     #[cfg(feature = "server")]
     pub fn played_by(&self, label: &str) -> NewRunOptions {
         NewRunOptions {
@@ -77,7 +75,7 @@ impl NewRunOptions {
         }
     }
 
-    /// Returns the run of a program, and a sentence if days, cash or scenario make it a sandbox run.
+    /// Returns the run of a program, and a remark if days, cash or scenario make it a sandbox run.
     ///
     /// # Errors
     /// As [`NewRunOptions::new_run`].
@@ -96,10 +94,10 @@ impl NewRunOptions {
         Ok((sandbox, Some(remark)))
     }
 
-    /// The run, in a mode unless another was asked for.
+    /// Returns the settings of the run. `mode` is the default.
     ///
     /// # Errors
-    /// Two labels; what a baseline run must not have; there is no folder of runs.
+    /// The labels differ, a baseline run has other terms, or there is no folder of runs.
     pub fn new_run(&self, mode: Mode, context: &Context) -> Result<NewRun, Failure> {
         let standard = NewRun::default();
         context.check_participant(self.participant.as_deref())?;

@@ -1,5 +1,5 @@
-//! Files that a command writes where it was told to: whole or not at all. A device or a pipe is written to, never replaced, and
-//! neither is a file that begins otherwise than what is written: a run, a policy, a study.
+//! Output files of commands: written completely or not at all. Devices and pipes are written to and never replaced. An existing
+//! file with a different beginning is never replaced either, because it may be a run, a policy or a study.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Write};
@@ -8,25 +8,23 @@ use std::path::Path;
 use super::Failure;
 use crate::record::files::folder_of;
 
-/// Bytes by which a drawing, rows, a page, a record and a file of configuration are told apart.
+/// Number of leading bytes that identify the kind of a file.
 const BEGINNING: u64 = 8;
 
-/// What is said of a file that is something else.
-const OTHER: &str =
-    "it is there and holds something else than this command writes: name another file, or delete it";
+const OTHER: &str = "the file exists and was not written by this command: choose another name, or delete it";
 
-/// Writes a text into a file.
+/// Writes a text to a file.
 ///
 /// # Errors
-/// The disk does not take it; a file that was there stays.
+/// The file cannot be written. An existing file stays unchanged.
 pub fn write_text(place: &Path, text: &str) -> Result<(), Failure> {
     write_file(place, None, |out| out.write_all(text.as_bytes()))
 }
 
-/// Writes a file; `safe` says what is not lost if that fails.
+/// Writes a file. `safe` names data that is not lost if writing fails.
 ///
 /// # Errors
-/// The disk does not take it; a file that was there stays.
+/// The file cannot be written. An existing file stays unchanged.
 pub fn write_file(
     place: &Path,
     safe: Option<&str>,
@@ -40,11 +38,11 @@ pub fn write_file(
     };
     written.map_err(|error| {
         let safe = safe.map_or(String::new(), |safe| format!(", {safe}"));
-        Failure::failed(format!("{}: {error}; it was not written{safe}", place.display()))
+        Failure::failed(format!("{}: {error}; the file was not written{safe}", place.display()))
     })
 }
 
-/// Writes beside the place, and moves there what is whole.
+/// Writes a temporary file next to the target and renames it when it is complete.
 fn replaced(place: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
     let name = place.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let draft = place.with_file_name(format!(".{name}.draft"));
@@ -58,10 +56,10 @@ fn replaced(place: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result
     written
 }
 
-/// Refuses a place whose file begins otherwise than with what will be written there.
+/// Checks that an existing file begins with the first bytes of `expected`.
 ///
 /// # Errors
-/// It does, or cannot be read.
+/// It begins differently or cannot be read.
 pub fn check_beginning(place: &Path, expected: &str) -> Result<(), Failure> {
     let is_file = std::fs::metadata(place).is_ok_and(|found| found.is_file());
     let there = if is_file { beginning(place) } else { Ok(Vec::new()) };
@@ -79,7 +77,7 @@ fn beginning(path: &Path) -> io::Result<Vec<u8>> {
     Ok(first)
 }
 
-/// Refuses to replace a file that begins otherwise than the new one: it was not written by the same command.
+/// Returns an error if the existing file begins differently from the new one.
 fn refuse_other(place: &Path, draft: &Path) -> io::Result<()> {
     match beginning(place) {
         Ok(there) if !there.is_empty() && there != beginning(draft)? => Err(io::Error::other(OTHER)),
@@ -94,7 +92,7 @@ fn filled(file: File, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>
     Ok(file.into_inner()?)
 }
 
-/// Whether two paths name one file, which need not be there yet.
+/// Returns whether two paths name the same file, which may not exist yet.
 pub fn is_same_file(one: &Path, other: &Path) -> bool {
     let place = |path: &Path| {
         path.canonicalize()
@@ -118,7 +116,7 @@ mod tests {
             Err(io::Error::other("the disk is full"))
         });
         let said = half.expect_err("it fails").to_string();
-        assert!(said.ends_with("the disk is full; it was not written, the run is kept"), "{said}");
+        assert!(said.ends_with("the disk is full; the file was not written, the run is kept"), "{said}");
         assert_eq!(std::fs::read_to_string(&place).expect("a file"), "# report one");
         write_text(&place, "# report two").expect("written");
         assert_eq!(std::fs::read_to_string(&place).expect("a file"), "# report two");
@@ -132,7 +130,7 @@ mod tests {
         for there in ["{\"seq\":0}\n", "name = \"mine\"\n", "run,policy\n"] {
             std::fs::write(&place, there).expect("a file");
             let said = write_text(&place, "<svg>").expect_err("refused").to_string();
-            assert!(said.contains("holds something else"), "{said}");
+            assert!(said.contains("was not written by this command"), "{said}");
             assert_eq!(std::fs::read_to_string(&place).expect("a file"), there);
         }
         std::fs::write(&place, "").expect("an empty file");

@@ -1,4 +1,4 @@
-//! `novamind pictures`: the screens of a run as text or SVG, drawn by the console itself.
+//! `novamind pictures`: the screens of a run as text or SVG, drawn by the console.
 
 use std::path::{Path, PathBuf};
 
@@ -17,34 +17,33 @@ use crate::tui::glyphs::Glyphs;
 use crate::tui::photograph::{self, Paper};
 use crate::worker::request::Recorded;
 
-/// Options of `pictures`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// The run: its id or the beginning of it, or `latest`.
+    /// Run: its id or a prefix of it, or `latest` for the newest
     #[arg(default_value = "latest")]
     run: String,
     /// Only these screens, by name: overview, cash, customers, …
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     screens: Vec<String>,
-    /// Keys to press instead of showing screens, as the key file writes them, with blanks between them.
+    /// Keys to press instead of showing screens, as in keys.toml, separated by spaces
     #[arg(long, conflicts_with = "screens")]
     keys: Option<String>,
-    /// Replay the run instead, and show it as it was after this week.
+    /// Replay the run, and show it as it was after this week
     #[arg(long, value_name = "WEEK")]
     replay: Option<u32>,
-    /// Columns and rows of the window.
+    /// Columns and rows of the window
     #[arg(long, default_value = "120x40", value_parser = size)]
     size: (u16, u16),
-    /// Theme.
+    /// Theme
     #[arg(long, default_value = "dark")]
     theme: String,
-    /// Draw with ASCII only.
+    /// Draw with ASCII characters only
     #[arg(long)]
     ascii: bool,
-    /// Text or SVG.
+    /// Output format
     #[arg(long, value_enum, default_value_t = PictureFormat::Text)]
     format: PictureFormat,
-    /// Folder for one file per screen; without it everything goes to standard output.
+    /// Folder for one file per screen [default: standard output]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -55,7 +54,7 @@ enum PictureFormat {
     Svg,
 }
 
-/// Largest window, columns and rows: a picture of more is a mistake.
+/// Largest number of columns or rows; larger values are mistakes.
 const LARGEST: u16 = 500;
 
 pub(super) fn size(text: &str) -> Result<(u16, u16), String> {
@@ -63,10 +62,9 @@ pub(super) fn size(text: &str) -> Result<(u16, u16), String> {
     let number = |part: &str| part.trim().parse::<u16>().ok().filter(|number| (1..=LARGEST).contains(number));
     parts
         .and_then(|(columns, rows)| Some((number(columns)?, number(rows)?)))
-        .ok_or_else(|| format!("a size is columns and rows up to {LARGEST}, for instance 120x40"))
+        .ok_or_else(|| format!("give columns and rows up to {LARGEST}, for example 120x40"))
 }
 
-/// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let runs = context.runs()?;
     let folder = find_run_to_read(&runs, &options.run)?;
@@ -89,7 +87,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     taken
 }
 
-/// Names of the pictures, and the keys before each.
+/// Returns the names of the pictures and the keys to press for each.
 fn places(options: &Options, keys: &Keys) -> Result<Vec<(String, String)>, Failure> {
     if let Some(keys) = &options.keys {
         return Ok(vec![("keys".to_owned(), keys.clone())]);
@@ -104,7 +102,7 @@ fn places(options: &Options, keys: &Keys) -> Result<Vec<(String, String)>, Failu
     let wanted = |screen: &ScreenId| {
         options.screens.is_empty() || options.screens.iter().any(|name| name == screen.id())
     };
-    // Letters and digits would be typed into a statement: esc leaves the editor first.
+    // Letters and digits would be typed into a statement; esc leaves the editor first.
     let place = |screen: ScreenId| {
         let key = keys.label(screen.action()).unwrap_or_default();
         (screen.id().to_owned(), format!("esc {key}"))

@@ -1,4 +1,4 @@
-//! `novamind play`: the console, or line by line.
+//! `novamind play`: plays in the console or line by line.
 
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -28,48 +28,47 @@ use crate::worker::request::{Recorded, Request};
 use novamind_course::Handout;
 use novamind_study::Study;
 
-/// Options of `play`.
 #[derive(Debug, Args, Clone, Default, PartialEq)]
 pub struct Options {
-    /// Open a run; `latest` is the newest unfinished one.
+    /// Open a run; `latest` is the newest unfinished one
     #[arg(long, value_name = "ID", conflicts_with_all = ["new", "seed", "days", "cash", "scenario", "mode", "participant", "set", "planted", "lesson"])]
     run: Option<String>,
-    /// Follow a run read-only while somebody else plays it.
+    /// Follow a run read-only while someone else plays it
     #[arg(long, requires = "run")]
     watch: bool,
-    /// Draw it to be read from far away: four figures, the curve of cash, what was decided.
+    /// With --watch: show four figures, the cash curve and the decisions, readable from a distance
     #[arg(long, requires = "watch")]
     big: bool,
-    /// Start a new run.
+    /// Start a new run
     #[arg(long)]
     new: bool,
     #[command(flatten)]
     made_of: NewRunOptions,
-    /// Play a lesson.
+    /// Play a lesson
     #[arg(long, value_name = "NAME", conflicts_with_all = ["seed", "days", "cash", "scenario", "mode", "set", "planted"])]
     lesson: Option<String>,
-    /// Begin, or go on with, what a hand-out of a class holds, in the folder of runs of its student.
+    /// Start or continue a handout of a class, in the folder of its student
     #[arg(long, value_name = "FILE", conflicts_with_all = ["run", "new", "seed", "days", "cash", "scenario", "mode", "participant", "set", "planted", "lesson", "watch"])]
     handout: Option<PathBuf>,
-    /// Let the language model that a file names lend its voice to the run.
+    /// Use the language model of this settings file as the voice of the run
     #[arg(long, value_name = "FILE", conflicts_with_all = ["watch", "lesson", "handout"])]
     voice: Option<PathBuf>,
-    /// Theme of the console.
+    /// Theme of the console
     #[arg(long, value_name = "NAME")]
     theme: Option<String>,
-    /// Draw without box and braille characters.
+    /// Draw without box and braille characters
     #[arg(long)]
     ascii: bool,
-    /// Play line by line.
+    /// Play line by line
     #[arg(long)]
     plain: bool,
-    /// Plain: answer with one JSON object per line.
+    /// With --plain: answer with one JSON object per line
     #[arg(long)]
     json: bool,
-    /// Plain: print each input line before its answer.
+    /// With --plain: print each input line before its answer
     #[arg(long)]
     echo: bool,
-    /// Plain: end at the first refused or unreadable line.
+    /// With --plain: stop at the first rejected or invalid line
     #[arg(long)]
     strict: bool,
 }
@@ -87,7 +86,7 @@ impl Options {
 }
 
 impl Options {
-    /// Options that begin a lesson.
+    /// Returns the options that start a lesson.
     pub fn of_lesson(name: String, options: Options) -> Options {
         Options { lesson: Some(name), ..options }
     }
@@ -99,7 +98,6 @@ impl Options {
     }
 }
 
-/// Runs the command.
 pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
     if let Some(path) = &options.handout {
         let handout = Handout::read(path)?;
@@ -114,21 +112,21 @@ pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
     if asks_for_lines(&options) { play_plain(&options, context) } else { play_console(&options, context) }
 }
 
-/// Whether the game is played line by line.
+/// Returns whether the game is played line by line.
 fn asks_for_lines(options: &Options) -> bool {
     options.plain || !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal()
 }
 
-/// Leads a participant through a study. What is played follows from its protocol, so no other option says so.
+/// Guides a participant through a study. The protocol determines the runs, so options of a run are rejected.
 pub fn lead(folder: &Path, options: &Options, context: &Context) -> Result<(), Failure> {
     if options.run.is_some() || options.voice.is_some() || options.asks_for_new_run() {
         return Err(Failure::usage(
-            "in a study the protocol says what is played: no --run, no --voice, and no option of a new run",
+            "the protocol of the study determines the runs: leave out --run, --voice and the options of a new run",
         ));
     }
     if let Some(label) = &context.participant {
         return Err(Failure::usage(format!(
-            "in a study every participant gives their label on the first page: leave out --as {label}"
+            "participants of a study enter their label on the first page: leave out --as {label}"
         )));
     }
     let study = Study::read(folder)?;
@@ -158,7 +156,7 @@ fn open(options: &Options, context: &Context) -> Result<Session, Failure> {
     }
 }
 
-/// Starts a run; a participant who has to agree to something is asked at a terminal.
+/// Creates a run. At a terminal, a participant is asked for consent if it is needed.
 fn create(new: NewRun, context: &Context) -> Result<Session, Failure> {
     match Session::create(new.clone(), &context.configuration) {
         Err(RunError::ConsentNeeded(text)) if std::io::stdin().is_terminal() => {
@@ -168,7 +166,7 @@ fn create(new: NewRun, context: &Context) -> Result<Session, Failure> {
             let read = std::io::stdin().read_line(&mut answer);
             if read.is_err() || !answer.trim().eq_ignore_ascii_case("yes") {
                 return Err(Failure::failed(
-                    "nobody agreed; no run was started and nothing was recorded".to_owned(),
+                    "you did not agree; no run was created and nothing was recorded".to_owned(),
                 ));
             }
             let given = ConsentGiven {
@@ -208,7 +206,7 @@ fn play_console(options: &Options, context: &Context) -> Result<(), Failure> {
     show_console(options, start, context)
 }
 
-/// The theme that was asked for; else none where the terminal wants no colours, else the one that was chosen by key.
+/// Returns the theme: the one given, otherwise none if the terminal disables color, otherwise the one last chosen.
 fn theme(
     options: &Options,
     no_colour: bool,
@@ -217,19 +215,19 @@ fn theme(
 ) -> Result<Theme, Failure> {
     let asked = options.theme.as_deref().or(no_colour.then_some("mono"));
     let remembered = chosen.theme.as_deref().filter(|_| asked.is_none());
-    // A theme that has gone since is no reason not to play.
+    // A chosen theme that no longer exists must not prevent playing.
     if let Some(theme) = remembered.and_then(|name| themes::find(name, configuration).ok()) {
         return Ok(theme);
     }
     themes::find(asked.unwrap_or("dark"), configuration).map_err(Failure::usage)
 }
 
-/// Opens the console with something to begin with.
+/// Opens the console with an initial effect.
 pub fn show_console(options: &Options, start: Option<Effect>, context: &Context) -> Result<(), Failure> {
     show_console_again(options, start, context, context.again())
 }
 
-/// The same, with the command that goes on later.
+/// Opens the console and prints `again`, the command that continues later.
 fn show_console_again(
     options: &Options,
     start: Option<Effect>,

@@ -1,4 +1,4 @@
-//! `novamind query`: SQL on a run.
+//! `novamind query`: runs SQL on a run.
 
 use std::path::Path;
 
@@ -20,22 +20,21 @@ use crate::session::{
     rows_as_json, with_the_way_to_hidden_tables,
 };
 
-/// Options of `query`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Run, or `latest`: the newest.
+    /// Run, or `latest` for the newest
     run: String,
-    /// One read-only statement, or the name of a query of the library.
-    // A statement may begin with a comment, which begins with hyphens.
+    /// One read-only statement, or the name of a query of the library
+    // A statement may begin with a comment, and so with hyphens.
     #[arg(allow_hyphen_values = true)]
     sql: String,
-    /// Serve the hidden tables of a debug run, or of a run that is over, as well; the look is recorded.
+    /// Include the hidden tables; for debug runs and finished runs. The inspection is recorded
     #[arg(long)]
     xray: bool,
-    /// Day that hidden.customers shows [default: the last one].
+    /// Day that hidden.customers shows [default: the last one]
     #[arg(long, value_name = "DAY", requires = "xray")]
     day: Option<u32>,
-    /// Format of the result.
+    /// Format of the result
     #[arg(long, value_enum, default_value = "table")]
     format: RowFormat,
 }
@@ -43,17 +42,16 @@ pub struct Options {
 /// Format of a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum RowFormat {
-    /// Aligned columns.
+    /// Aligned columns
     Table,
-    /// Comma-separated values.
+    /// Comma-separated values
     Csv,
-    /// One JSON object.
+    /// One JSON object
     Json,
-    /// A Markdown table.
+    /// A Markdown table
     Md,
 }
 
-/// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs()?, &options.run)?;
     let rows = if options.xray {
@@ -71,7 +69,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     }
 }
 
-/// What is asked: a name, which no statement is, stands for a query of the library.
+/// Returns the statement. A single name, which is never a statement, selects a query of the library.
 fn statement(given: &str, context: &Context) -> Result<String, Failure> {
     let is_name =
         given.contains('-') && given.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-');
@@ -81,14 +79,14 @@ fn statement(given: &str, context: &Context) -> Result<String, Failure> {
         None if is_name && !given.starts_with('-') => {
             let near = library.near(given);
             let near =
-                if near.is_empty() { String::new() } else { format!("; near it: {}", near.join(", ")) };
-            Err(Failure::usage(format!("the library has no query {given}{near}")))
+                if near.is_empty() { String::new() } else { format!("; did you mean {}?", near.join(", ")) };
+            Err(Failure::usage(format!("there is no query {given}{near}")))
         }
         None => Ok(given.to_owned()),
     }
 }
 
-/// Asks the hidden tables too. The look is a line of the run, so it is opened to be written.
+/// Queries with the hidden tables. The run is opened for writing because the inspection is recorded.
 fn ask_xray(folder: &Path, options: &Options, context: &Context) -> Result<Rows, Failure> {
     context.check_look(folder)?;
     let mut session = Session::open_sealed(folder, Access::Write, true, context.seal_key()?)?;
@@ -99,15 +97,15 @@ fn ask_xray(folder: &Path, options: &Options, context: &Context) -> Result<Rows,
     Ok(rows)
 }
 
-/// Asks the run's database, which is brought up to date on the disk if it is not complete. Where somebody plays the run,
-/// or its folder cannot be written, a database in memory is made from the trajectory.
+/// Queries the database of the run, which is completed on disk first if necessary. If the run is being played or its folder is
+/// read-only, the database is built in memory from the trajectory.
 fn ask(folder: &Path, sql: &str, key: &SealKey) -> Result<Rows, Failure> {
     if let Some(rows) = ask_file(folder, sql, key)? {
         return Ok(rows);
     }
     let mut progress = None;
     let rebuilt = rebuild_database(folder, key, &mut |day, days| {
-        let bar = progress.get_or_insert_with(|| progress_bar(u64::from(days), "days of the database"));
+        let bar = progress.get_or_insert_with(|| progress_bar(u64::from(days), "days in the database"));
         bar.set_position(u64::from(day));
     });
     if let Some(bar) = progress {
@@ -126,15 +124,15 @@ fn ask(folder: &Path, sql: &str, key: &SealKey) -> Result<Rows, Failure> {
     Ok(session.query(sql)?)
 }
 
-/// Asks the run's database if it is complete.
+/// Queries the database file. Returns `None` if it is incomplete.
 fn ask_file(folder: &Path, sql: &str, key: &SealKey) -> Result<Option<Rows>, Failure> {
-    // Both read long files: each has a thread of its own.
+    // Both read long files, so each has its own thread.
     let (trajectory, opened) = std::thread::scope(|scope| {
         let opened = scope.spawn(|| connection_to_file(folder, key));
         (Trajectory::read(&folder.join("trajectory.jsonl")), opened.join())
     });
     let (trajectory, opened) = (trajectory?, opened.unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
-    // Queries and views do not move the database on; only lines that change the company do.
+    // Only lines that change the company count; queries and views do not.
     let last = trajectory.lines.iter().rev().find(|line| moves_database(line));
     if let (Ok((connection, position)), Some(last)) = (opened, last)
         && position.seq >= last.seq
@@ -171,7 +169,6 @@ fn moves_database(line: &Line) -> bool {
     }
 }
 
-/// A result as a Markdown table.
 fn as_markdown(rows: &Rows) -> String {
     let escaped = |text: &str| text.replace('|', "\\|").replace(['\n', '\r'], " ");
     let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
@@ -192,9 +189,9 @@ fn as_markdown(rows: &Rows) -> String {
     printable(&text).into_owned()
 }
 
-/// A result as comma-separated values with a header.
+/// Formats a result as comma-separated values with a header.
 pub fn as_csv(rows: &Rows) -> Result<String, Failure> {
-    let wrong = |error: String| Failure::failed(format!("the result cannot be written as CSV: {error}"));
+    let wrong = |error: String| Failure::failed(format!("cannot write the result as CSV: {error}"));
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(&rows.columns).map_err(|error| wrong(error.to_string()))?;
     for row in &rows.rows {

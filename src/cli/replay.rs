@@ -1,4 +1,4 @@
-//! `novamind replay`: play a recorded run again, in the console or headless to compare every state.
+//! `novamind replay`: replays a recorded run in the console, or simulates it again without a terminal to compare every state.
 
 mod cast;
 
@@ -15,42 +15,40 @@ use crate::record::folder::runs::find_run_to_read;
 use crate::session::{Goal, record_look, verify_sealed};
 use crate::worker::request::{Recorded, Request};
 
-/// Options of `replay`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Run, `latest` (the newest), or a run's folder or trajectory.
+    /// Run, `latest` for the newest, or the path of a run folder or trajectory
     run: String,
-    /// Simulate again and compare every recorded state.
+    /// Simulate the run again and compare every recorded state
     #[arg(long)]
     verify: bool,
-    /// Begin after this week; with --cast: record this week, or from the first to the last of A..B.
+    /// Start after this week; with --cast: record this week, or the weeks A..B
     #[arg(long, value_name = "N|A..B", conflicts_with = "verify", value_parser = weeks)]
     week: Option<(u32, Option<u32>)>,
-    /// Begin on the X-ray screen, at the end of the record unless --week says otherwise; of a debug run, or of one that is over.
+    /// Open the X-ray screen, at the end of the record unless --week is given; for debug runs and finished runs
     #[arg(long, conflicts_with = "verify")]
     xray: bool,
-    /// Record the replay for terminal players instead of showing it: an asciicast, action by action.
+    /// Write the replay to this file as an asciicast instead of showing it
     #[arg(long, value_name = "FILE", conflicts_with_all = ["verify", "xray"])]
     cast: Option<PathBuf>,
     #[command(flatten)]
     recording: cast::RecordingOptions,
 }
 
-/// A week, or the first and the last of some.
+/// Parses a week, or a range of weeks.
 fn weeks(text: &str) -> Result<(u32, Option<u32>), String> {
-    let number = |text: &str| text.parse::<u32>().map_err(|_| format!("{text} is not the number of a week"));
+    let number = |text: &str| text.parse::<u32>().map_err(|_| format!("{text} is not a week number"));
     match text.split_once("..") {
         None => Ok((number(text)?, None)),
         Some((first, last)) => match (number(first)?, number(last)?) {
             (first, last) if 1 <= first && first <= last => Ok((first, Some(last))),
             (first, last) => Err(format!(
-                "weeks {first} to {last} are none; write the first, two dots, the last, for instance 20..24"
+                "{first}..{last} is not a range of weeks; write the first and the last week, for example 20..24"
             )),
         },
     }
 }
 
-/// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     match &options.cast {
         Some(file) => cast::record(file, recorded(&options.run), options.week, &options.recording, context),
@@ -66,15 +64,13 @@ fn show(options: &Options, context: &Context) -> Result<(), Failure> {
     }
     if !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
         return Err(Failure::usage(
-            "a replay needs a terminal; --verify simulates the run again without one and compares every \
+            "a replay needs a terminal; without one, use --verify to simulate the run again and compare every \
              state",
         ));
     }
     let (goal, from) = match (options.week, options.xray) {
         (Some((_, Some(_))), _) => {
-            return Err(Failure::usage(
-                "a replay on the screen begins after one week; --cast records several",
-            ));
+            return Err(Failure::usage("a replay starts after one week; a range of weeks needs --cast"));
         }
         (Some((week, None)), _) => (Goal::Week(week), format!("week {week}")),
         (None, true) => (Goal::Last, "the end".to_owned()),
@@ -88,28 +84,26 @@ fn show(options: &Options, context: &Context) -> Result<(), Failure> {
     show_console(&play::Options::default(), Some(effect), context)
 }
 
-/// Refuses where hidden state of a record stays hidden.
+/// Checks that the hidden state of a record may be inspected.
 fn check_inside(recorded: &Recorded, context: &Context) -> Result<(), Failure> {
     let folder = match recorded {
         Recorded::Run(id) => Some(find_run_to_read(&context.runs()?, id)?),
         Recorded::File(path) => folder_around(path),
     };
     let folder = folder.ok_or_else(|| {
-        Failure::usage(
-            "the x-ray looks into runs; this trajectory stands alone, without the folder of its run",
-        )
+        Failure::usage("the x-ray needs the folder of the run; this trajectory is a single file")
     })?;
     context.check_look(&folder)?;
     Ok(open_to_look_inside(&folder, context.seal_key()?).map(drop)?)
 }
 
-/// The folder of a run that a path names: it, or the one in which a trajectory lies.
+/// Returns the run folder that a path names or that contains it.
 fn folder_around(path: &Path) -> Option<PathBuf> {
     let is_run = |folder: &&Path| folder.join("run.toml").is_file();
     Some(path).filter(is_run).or_else(|| path.parent().filter(is_run)).map(Path::to_owned)
 }
 
-/// Records that a run is read: one of the folder of runs, or in a folder of its own.
+/// Records that a run was read.
 fn note_look(recorded: &Recorded, detail: &str, context: &Context) -> Result<(), Failure> {
     let folder = match recorded {
         Recorded::Run(id) => find_run_to_read(&context.runs()?, id)?,
@@ -125,7 +119,7 @@ fn note_look(recorded: &Recorded, detail: &str, context: &Context) -> Result<(),
     context.look(&folder, "replay", detail)
 }
 
-/// A file or folder, if there is one of that name; otherwise a run.
+/// Returns a record by path if there is such a file or folder, otherwise by run id.
 fn recorded(name: &str) -> Recorded {
     let path = PathBuf::from(name);
     if path.exists() { Recorded::File(path) } else { Recorded::Run(name.to_owned()) }
@@ -140,7 +134,7 @@ fn check(options: &Options, context: &Context) -> Result<(), Failure> {
     };
     let found = verify_sealed(&place, &context.seal_key()?)?;
     print(&format!(
-        "run {}: {} lines, {} states reached again, day {}, state {}\n",
+        "run {}: {} lines, {} states verified, day {}, state {}\n",
         found.run, found.lines, found.states, found.day, found.state_hash
     ))
 }

@@ -1,4 +1,4 @@
-//! `novamind report`: a run told, as Markdown or as a page for a browser.
+//! `novamind report`: a report on a run as Markdown or HTML, a card, or a report on how it was played.
 
 use std::path::{Path, PathBuf};
 
@@ -13,21 +13,20 @@ use crate::report::{
 };
 use crate::session::{Session, lines_afterwards};
 
-/// Options of `report`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Run, or `latest`: the newest.
+    /// Run, or `latest` for the newest
     run: String,
-    /// How it was played instead of what came of it: time, breaks, screens, queries and tools by week.
+    /// Report on how the run was played: time, breaks, screens, queries and tools by week
     #[arg(long)]
     session: bool,
-    /// A card to hand on instead: the curve of cash, turning points, three numbers, seed, scenario and version.
+    /// Write a card to share: cash curve, turning points, three figures, seed, scenario and version
     #[arg(long, conflicts_with = "session")]
     card: bool,
-    /// Format: markdown (or text for a card) unless given.
+    /// Format [default: markdown; with --card: text]
     #[arg(long, value_enum)]
     format: Option<ReportFormat>,
-    /// Write to this file instead of standard output.
+    /// Write to this file instead of standard output
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
@@ -35,19 +34,18 @@ pub struct Options {
 /// Format of a report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum ReportFormat {
-    /// Text with headings and tables.
+    /// Text with headings and tables
     Markdown,
-    /// One page with charts, without scripts or other files.
+    /// One web page with charts, without scripts or other files
     Html,
-    /// One JSON object; only with --session.
+    /// One JSON object; only with --session
     Json,
-    /// Text of 80 columns; only with --card.
+    /// Text of 80 columns; only with --card
     Text,
-    /// A drawing of 1200 by 630; only with --card.
+    /// A drawing of 1200 by 630 pixels; only with --card
     Svg,
 }
 
-/// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs()?, &options.run)?;
     let usual = if options.card { ReportFormat::Text } else { ReportFormat::Markdown };
@@ -65,7 +63,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     print(&format!("written: {}\n", path.display()))
 }
 
-/// The report of the run in a folder; nothing of the run is changed.
+/// Returns the report on the run in a folder. Does not modify the run.
 fn report_of(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
     let told = |write: fn(&Story) -> String| -> Result<String, Failure> {
         Ok(write(&Story::of(&Session::open_to_read(folder, true)?)))
@@ -74,13 +72,13 @@ fn report_of(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
         ReportFormat::Markdown => told(as_markdown),
         ReportFormat::Html => told(as_html),
         ReportFormat::Json => Err(Failure::usage(
-            "a report is markdown or html; json needs --session, and `novamind query` gives the figures",
+            "a report is markdown or html; json needs --session. For figures, use `novamind query`",
         )),
         ReportFormat::Text | ReportFormat::Svg => Err(only_of_cards()),
     }
 }
 
-/// The card of the run in a folder; nothing of the run is changed.
+/// Returns the card of the run in a folder. Does not modify the run.
 fn card_of(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
     let write = match format {
         ReportFormat::Text => card_as_text,
@@ -94,7 +92,7 @@ fn only_of_cards() -> Failure {
     Failure::usage("text and svg need --card")
 }
 
-/// How the run in a folder was played; nothing of the run is changed.
+/// Returns the report on how the run in a folder was played. Does not modify the run.
 fn session_of(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
     let logbook = logbook_of(folder)?;
     Ok(match format {
@@ -105,7 +103,7 @@ fn session_of(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
     })
 }
 
-/// The logbook of the run in a folder.
+/// Reads the logbook of the run in a folder.
 pub fn logbook_of(folder: &Path) -> Result<Logbook, Failure> {
     let session = Session::open_to_read(folder, true)?;
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;

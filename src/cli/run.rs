@@ -1,4 +1,4 @@
-//! `novamind run`: a policy over one or many seeds.
+//! `novamind run`: runs a policy over one or many seeds.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -15,63 +15,61 @@ use super::{Context, Failure, print};
 use crate::lab::{Collector, Figure, Outcome, Policy, RunEnd, RunError, RunSpec, play};
 pub use crate::lab::{Seeds, parse_seeds};
 
-/// Options of `run`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Name of a policy, or path of a policy file.
+    /// Name of a policy, or path of a policy file
     #[arg(long, value_name = "NAME|FILE")]
     policy: String,
-    /// Seed, or a range with both ends: 1..24.
+    /// Seed, or a range including both ends: 1..24
     #[arg(long, default_value = "42", value_name = "N|A..B", value_parser = parse_seeds)]
     seed: Seeds,
-    /// Last day of the run; affects the mechanics [default: as the policy or scenario says, else 500].
+    /// Last day of the run; affects the mechanics [default: that of the policy or scenario, otherwise 500]
     #[arg(long, value_name = "N")]
     days: Option<u32>,
-    /// Stop after this day; the horizon stays.
+    /// Stop after this day; the horizon does not change
     #[arg(long, value_name = "N")]
     until: Option<u32>,
-    /// Demand surges [default: as the policy or scenario says].
+    /// Demand surges [default: as in the policy or scenario]
     #[arg(long, value_enum)]
     surges: Option<Switch>,
-    /// Starting cash in dollars.
+    /// Starting cash in dollars
     #[arg(long, value_name = "X")]
     cash: Option<f64>,
-    /// Scenario.
+    /// Scenario
     #[arg(long, value_name = "NAME")]
     scenario: Option<String>,
-    /// Set a parameter; can be repeated.
+    /// Set a parameter; can be repeated
     #[arg(long, value_name = "TABLE.KEY=VALUE", value_parser = parse_override)]
     set: Vec<(String, String)>,
-    /// Seeds played at the same time [default: as many as there are processors].
+    /// Number of seeds to play in parallel [default: the number of processors]
     #[arg(long, value_name = "N")]
     jobs: Option<usize>,
-    /// Write figures of every day as CSV.
+    /// Write the figures of every day to this file as CSV
     #[arg(long, value_name = "FILE.csv")]
     metrics: Option<PathBuf>,
-    /// Days whose figures are written [default: all].
+    /// Days whose figures are written [default: all]
     #[arg(long, value_name = "N,N,…", value_delimiter = ',', requires = "metrics")]
     metrics_days: Option<Vec<u32>>,
-    /// Keep the runs with their databases.
+    /// Keep the runs with their databases
     #[arg(long)]
     save: bool,
-    /// Exit with code 4 if a run ends in bankruptcy.
+    /// Exit with code 4 if a run ends in bankruptcy
     #[arg(long)]
     fail_on_bankruptcy: bool,
-    /// One JSON object per seed.
+    /// Print one JSON object per seed
     #[arg(long)]
     json: bool,
 }
 
-/// On or off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Switch {
-    /// On.
+    /// On
     On,
-    /// Off.
+    /// Off
     Off,
 }
 
-/// Reads `table.key=value`.
+/// Parses `table.key=value`.
 pub fn parse_override(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().to_owned(), value.trim().to_owned())),
@@ -79,7 +77,6 @@ pub fn parse_override(text: &str) -> Result<(String, String), String> {
     }
 }
 
-/// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let policy = Policy::find(&options.policy, &context.configuration)?;
     let save = if options.save { Some(context.runs()?) } else { None };
@@ -104,7 +101,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let failure = in_order(results, options.seed.first..=options.seed.last, write).err();
     progress.finish_and_clear();
     if let Some(mut file) = book.metrics {
-        file.flush().map_err(|error| Failure::failed(format!("the figures cannot be written: {error}")))?;
+        file.flush().map_err(|error| Failure::failed(format!("cannot write the figures: {error}")))?;
     }
     match failure {
         Some(failure) => Err(failure),
@@ -113,10 +110,10 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     }
 }
 
-/// A run that has ended, or could not be played.
+/// Seed, outcome and figures of a run.
 type Played = (u64, Result<Outcome, RunError>, Collector);
 
-/// Plays all seeds on a pool of threads; results arrive in any order.
+/// Plays all seeds on a thread pool. Results arrive in any order.
 fn start(
     policy: &Policy,
     spec: &RunSpec,
@@ -134,7 +131,7 @@ fn start(
                 let own = RunSpec { seed, ..spec.clone() };
                 let mut collector = if wanted { Collector::new(days.clone()) } else { Collector::idle() };
                 let outcome = play(&policy, &own, &configuration, &mut collector);
-                // Nobody listens any more once an earlier seed has failed.
+                // The receiver is gone after an earlier seed has failed.
                 let _ = done.send((seed, outcome, collector));
             });
         });
@@ -142,10 +139,10 @@ fn start(
     Ok(results)
 }
 
-/// Writes results in the order of their seeds, each as soon as all before it are written.
+/// Writes results in the order of their seeds, each as soon as all earlier ones are written.
 ///
 /// # Errors
-/// A result cannot be written. A seed has none: its thread has panicked.
+/// A result cannot be written, or a seed has no result because its thread panicked.
 fn in_order(
     results: impl IntoIterator<Item = Played>,
     seeds: RangeInclusive<u64>,
@@ -162,13 +159,13 @@ fn in_order(
     }
     match seeds.contains(&next) {
         true => Err(Failure::failed(format!(
-            "the program has a defect: the run of seed {next} did not end; runs of lower seeds are complete"
+            "internal error: the run of seed {next} did not end; the runs of lower seeds are complete"
         ))),
         false => Ok(()),
     }
 }
 
-/// Where results go.
+/// Destinations of the results.
 struct Book<'a> {
     metrics: Option<BufWriter<File>>,
     options: &'a Options,
@@ -194,7 +191,6 @@ fn summary(outcome: &Outcome, json: bool) -> String {
     }
 }
 
-/// Columns of figures.
 const HEAD: &str = "seed,day,figure,group,value";
 
 fn open_metrics(path: &PathBuf) -> Result<BufWriter<File>, Failure> {
@@ -205,7 +201,7 @@ fn open_metrics(path: &PathBuf) -> Result<BufWriter<File>, Failure> {
     Ok(file)
 }
 
-/// The figures of a run as `--metrics` writes them.
+/// Formats the figures of a run as rows for `--metrics`.
 pub fn figure_rows(seed: &str, figures: &[Figure]) -> String {
     let row = |own: &Figure| format!("{seed},{},{},{},{}\n", own.day, own.figure, own.group, own.value);
     format!("{HEAD}\n{}", figures.iter().map(row).collect::<String>())
@@ -214,28 +210,28 @@ pub fn figure_rows(seed: &str, figures: &[Figure]) -> String {
 fn write_figures(file: &mut BufWriter<File>, seed: u64, figures: &[Figure]) -> Result<(), Failure> {
     for Figure { day, figure, group, value } in figures {
         writeln!(file, "{seed},{day},{figure},{group},{value}")
-            .map_err(|error| Failure::failed(format!("the figures cannot be written: {error}")))?;
+            .map_err(|error| Failure::failed(format!("cannot write the figures: {error}")))?;
     }
     Ok(())
 }
 
-/// Most runs that are played at the same time: more threads than any machine has processors.
+/// Upper limit of `--jobs`, above the number of processors of any machine.
 const MOST_JOBS: usize = 1024;
 
-/// A pool of worker threads.
+/// Creates a pool of worker threads.
 pub fn thread_pool(jobs: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
     if jobs.is_some_and(|jobs| !(1..=MOST_JOBS).contains(&jobs)) {
         return Err(Failure::usage(format!(
-            "--jobs is a number from 1 to {MOST_JOBS}; without it, one for each processor"
+            "--jobs must be 1 to {MOST_JOBS}; the default is the number of processors"
         )));
     }
     rayon::ThreadPoolBuilder::new()
         .num_threads(jobs.unwrap_or(0))
         .build()
-        .map_err(|error| Failure::failed(format!("no threads: {error}")))
+        .map_err(|error| Failure::failed(format!("cannot start threads: {error}")))
 }
 
-/// A bar on standard error if that is a terminal; it appears only once work takes longer than half a second.
+/// Returns a progress bar on standard error if that is a terminal. It appears after half a second.
 pub fn progress_bar(length: u64, what: &'static str) -> indicatif::ProgressBar {
     use std::io::IsTerminal;
     if length < 2 || !std::io::stderr().is_terminal() {

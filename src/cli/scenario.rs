@@ -4,7 +4,6 @@ use clap::{Args, Subcommand};
 
 use super::{Context, Failure, print};
 
-/// Options of `scenario`.
 #[derive(Debug, Args)]
 pub struct Options {
     #[command(subcommand)]
@@ -13,16 +12,15 @@ pub struct Options {
 
 #[derive(Debug, Subcommand)]
 enum ScenarioCommand {
-    /// List all scenarios.
+    /// List all scenarios
     List,
-    /// Show the effective parameters of a scenario as TOML.
+    /// Show the effective parameters of a scenario as TOML
     Show {
-        /// Scenario.
+        /// Scenario
         name: String,
     },
 }
 
-/// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let configuration = &context.configuration;
     match &options.command {
@@ -31,7 +29,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             for name in configuration.scenarios() {
                 match configuration.scenario(&name) {
                     Ok(scenario) => text += &format!("{name:<24}  {}\n", scenario.description),
-                    // One wrong file does not hide the others.
+                    // One invalid file does not hide the others.
                     Err(error) => unreadable.push(error.to_string()),
                 }
             }
@@ -42,7 +40,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             let scenario = configuration.scenario(name)?;
             let params = configuration.parameters(&scenario, &[], true)?;
             let table = toml::to_string(&params)
-                .map_err(|error| Failure::failed(format!("the parameters cannot be written: {error}")))?;
+                .map_err(|error| Failure::failed(format!("cannot write the parameters: {error}")))?;
             let (days, cash) = scenario.terms(&params);
             print(&format!(
                 "# {}: {}\n# {days} days, {} at the start; digest {}\n\n{table}",

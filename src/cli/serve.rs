@@ -1,4 +1,4 @@
-//! `novamind serve`: a run for programs, over HTTP.
+//! `novamind serve`: serves a run to programs over HTTP.
 
 use std::path::PathBuf;
 
@@ -9,27 +9,28 @@ use super::which_run::WhichRun;
 use super::{Context, Failure, print};
 use crate::server::{HeldPort, HttpOptions, serve_http, write_client};
 
-/// Options of `serve`.
 #[derive(Debug, Args)]
 pub struct Options {
     #[command(flatten)]
     which: WhichRun,
-    /// Port on 127.0.0.1 [default: any free one].
+    /// Port on 127.0.0.1 [default: any free port]
     #[arg(long, value_name = "N")]
     port: Option<u16>,
-    /// Requests must carry the token in this file; it is made if there is none.
+    /// Require the token in this file from every request; the file is created if it does not exist
     #[arg(long, value_name = "FILE")]
     token: Option<PathBuf>,
-    /// Write the Python client into this folder, and serve nothing unless a run is named too.
+    /// Write the Python client to this folder; serves nothing unless a run is given, too
     #[arg(long, value_name = "DIR")]
     client: Option<PathBuf>,
 }
 
-/// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     if let Some(folder) = &options.client {
         write_client(folder)?;
-        eprintln!("the client is in {}: pip install it, or add the folder to PYTHONPATH", folder.display());
+        eprintln!(
+            "the client is in {}: install it with pip, or add the folder to PYTHONPATH",
+            folder.display()
+        );
         if !options.which.names_one() {
             return Ok(());
         }

@@ -1,21 +1,19 @@
-//! `novamind tables`: the visible schema.
+//! `novamind tables`: the tables and columns that can be queried.
 
 use clap::Args;
 
 use super::{Failure, print};
 use crate::database::{table, tables};
 
-/// Options of `tables`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Show the columns of this table.
+    /// Show the columns of this table
     name: Option<String>,
-    /// Print as JSON.
+    /// Print as JSON
     #[arg(long)]
     json: bool,
 }
 
-/// Runs the command.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let as_json = |value: Result<String, serde_json::Error>| value.unwrap_or_default() + "\n";
     let text = match (&options.name, options.json) {

@@ -1,4 +1,4 @@
-//! `novamind tools`: the catalogue.
+//! `novamind tools`: the catalog of tools.
 
 use clap::Args;
 use serde_json::json;
@@ -7,17 +7,15 @@ use super::{Failure, print};
 use crate::tools::describe::{ToolDocument, document};
 use crate::tools::{CATALOGUE, Numbers, catalogue, describe, find};
 
-/// Options of `tools`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Show everything about this tool.
+    /// Show the manual of this tool
     name: Option<String>,
-    /// Print as JSON.
+    /// Print as JSON
     #[arg(long)]
     json: bool,
 }
 
-/// Runs the command.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let numbers = Numbers::shipped();
     let text = match (&options.name, options.json) {

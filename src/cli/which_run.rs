@@ -1,4 +1,4 @@
-//! The run that a program plays: one that is there, or a new one.
+//! Options that select the run that a program plays.
 
 use std::path::PathBuf;
 
@@ -10,16 +10,16 @@ use crate::record::error::RunError;
 use crate::record::folder::runs::find_run;
 use crate::session::Session;
 
-/// The run that a program plays: one that is there, or a new one.
+/// The run that a program plays: an existing one or a new one.
 #[derive(Debug, Args, Clone)]
 pub struct WhichRun {
-    /// Go on with a run; `latest` is the newest unfinished one. Without it a new run begins.
+    /// Continue a run; `latest` is the newest unfinished one [default: start a new run]
     #[arg(long, value_name = "ID", conflicts_with_all = ["new", "seed", "days", "cash", "scenario", "mode", "participant", "set", "planted"])]
     run: Option<String>,
-    /// Let the language model that a file names lend its voice to the run.
+    /// Use the language model of this settings file as the voice of the run
     #[arg(long, value_name = "FILE")]
     voice: Option<PathBuf>,
-    /// Begin a new run.
+    /// Start a new run
     #[arg(long)]
     new: bool,
     #[command(flatten)]
@@ -27,15 +27,15 @@ pub struct WhichRun {
 }
 
 impl WhichRun {
-    /// Whether any option says which.
+    /// Returns whether any option selects a run.
     pub fn names_one(&self) -> bool {
         self.run.is_some() || self.new || self.made_of.ask_for_one()
     }
 
-    /// Opens or begins the run.
+    /// Opens or creates the run.
     ///
     /// # Errors
-    /// It is missing, in use, or belongs to a study; the new run cannot begin.
+    /// The run does not exist, is in use, or belongs to a study; or the new run cannot be created.
     pub fn open(&self, context: &Context) -> Result<Session, Failure> {
         let context = &context.with_voice(self.voice.as_deref())?;
         if let Some(id) = &self.run {
@@ -47,12 +47,12 @@ impl WhichRun {
     }
 }
 
-/// Begins a run that a program plays.
+/// Creates a run that a program plays.
 ///
 /// # Errors
-/// The run cannot begin.
+/// The run cannot be created.
 pub fn begin(made_of: &NewRunOptions, context: &Context) -> Result<Session, Failure> {
-    // A baseline run says who played it.
+    // A baseline run needs the label of its player.
     let label = context.participant.as_deref().unwrap_or("program");
     let (new, remark) = made_of.played_by(label).new_run_of_program(context)?;
     if let Some(remark) = remark {
@@ -60,8 +60,8 @@ pub fn begin(made_of: &NewRunOptions, context: &Context) -> Result<Session, Fail
     }
     match Session::create(new, &context.configuration) {
         Err(RunError::ConsentNeeded(_)) => Err(Failure::usage(
-            "this folder of configuration asks participants to agree to a text first, which no program can do: \
-             add --consent if the person has agreed",
+            "the configuration folder asks for consent, which a program cannot give: \
+             add --consent if the participant has agreed",
         )),
         created => Ok(created?),
     }

@@ -9,42 +9,42 @@ use novamind_tools::Refusal;
 /// The answer to a line.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Answer {
-    /// It was done.
+    /// The command succeeded.
     Done {
         /// Command.
         command: String,
-        /// Text, complete.
+        /// Complete text.
         text: String,
         /// Data.
         data: Value,
     },
-    /// It was refused; nothing changed.
+    /// The command was rejected. Nothing changed.
     Refused {
         /// Command.
         command: String,
-        /// Why.
+        /// The reason.
         refusal: Refusal,
     },
-    /// It could not be read.
+    /// The line could not be read.
     Usage {
-        /// What is wrong and what is near.
+        /// The problem, with similar names.
         problem: String,
         /// Column, from 1.
         column: usize,
-        /// What stands there, where the problem does not name it.
+        /// The word at this column, if the problem does not name it.
         place: Option<String>,
     },
-    /// It was `quit`.
+    /// The line was `quit`.
     Quit,
 }
 
 impl Answer {
-    /// A command with text and data.
+    /// Returns the answer of a command with text and data.
     pub fn done(command: &str, text: String, data: Value) -> Answer {
         Answer::Done { command: command.to_owned(), text, data }
     }
 
-    /// An accepted tool call: its name and the fields of its data, or those that people are shown in place of them.
+    /// Returns the answer of an accepted tool call: the fields of its data, or of `shown` in the text.
     pub fn call_shown(command: &str, data: Value, shown: Option<Value>) -> Answer {
         let mut text = format!("ok {command}\n");
         match plain_numbers(shown.unwrap_or_else(|| data.clone())) {
@@ -55,7 +55,7 @@ impl Answer {
         Answer::done(command, text, data)
     }
 
-    /// The same answer with notes for people below it.
+    /// Appends notes to the text. The data does not change.
     pub fn with_notes(mut self, notes: &[String]) -> Answer {
         if let Answer::Done { text, .. } = &mut self {
             notes.iter().for_each(|note| *text += &format!("note: {note}\n"));
@@ -63,17 +63,17 @@ impl Answer {
         self
     }
 
-    /// A refused command.
+    /// Returns the answer of a rejected command.
     pub fn refused(command: &str, refusal: Refusal) -> Answer {
         Answer::Refused { command: command.to_owned(), refusal }
     }
 
-    /// An unreadable line.
+    /// Returns the answer to a line that cannot be read.
     pub fn usage(problem: impl Into<String>, column: usize) -> Answer {
         Answer::Usage { problem: without_long_words(&problem.into()), column, place: None }
     }
 
-    /// The same answer to a line; an unreadable one names the word that is wrong.
+    /// Adds the word of the line that is wrong.
     pub fn naming_the_word_in(self, line: &str) -> Answer {
         let Answer::Usage { problem, column, .. } = self else { return self };
         let bare = |word: &str| word.trim_matches([',', ';', ':', '?', '.']).to_owned();
@@ -83,17 +83,17 @@ impl Answer {
         Answer::Usage { problem, column, place }
     }
 
-    /// Whether it was done.
+    /// Returns whether the command succeeded.
     pub fn is_ok(&self) -> bool {
         matches!(self, Answer::Done { .. })
     }
 
-    /// Whether the dialogue ends.
+    /// Returns whether the session ends.
     pub fn is_quit(&self) -> bool {
         matches!(self, Answer::Quit)
     }
 
-    /// The answer as lines of text.
+    /// Formats the answer as text.
     pub fn as_text(&self) -> String {
         match self {
             Answer::Done { text, .. } => text.clone(),
@@ -112,7 +112,7 @@ impl Answer {
         }
     }
 
-    /// The answer as one object; `day` is the day on which the line was read.
+    /// Formats the answer as one object. `day` is the day on which the line was read.
     pub fn as_json(&self, line: u32, day: u32) -> Value {
         match self {
             Answer::Done { command, data, .. } => {
@@ -147,14 +147,14 @@ impl Answer {
     }
 }
 
-/// The word in a column of a line, or that the line ends there.
+/// Returns the word at a column of a line, or "the end of the line".
 fn word_at(line: &str, column: usize) -> String {
     let from = line.char_indices().nth(column.saturating_sub(1)).map_or(line.len(), |(at, _)| at);
     let word: String = line[from..].split_whitespace().next().unwrap_or_default().chars().take(40).collect();
     if word.is_empty() { "the end of the line".to_owned() } else { word }
 }
 
-/// A field of an answer; a list of objects becomes a table.
+/// Formats a field of an answer. A list of objects becomes a table.
 fn field(name: &str, value: &Value) -> String {
     match value.as_array() {
         Some(list) if !list.is_empty() && list.iter().all(Value::is_object) => {
@@ -183,7 +183,7 @@ fn table_of(list: &[Value]) -> String {
     aligned(&columns, &rows)
 }
 
-/// A problem quotes what was typed, which can be a file that somebody pasted: words end after so many letters.
+/// Shortens long words, because a problem quotes the input, which may be a pasted file.
 fn without_long_words(text: &str) -> String {
     const MOST_LETTERS: usize = 80;
     let cut = |word: &str| match word.char_indices().nth(MOST_LETTERS) {

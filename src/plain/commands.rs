@@ -1,4 +1,4 @@
-//! The commands of plain mode: what each line does, and what is answered (docs/interfaces/plain-mode.md#commands).
+//! The commands of plain mode and their answers (docs/interfaces/plain-mode.md#commands).
 
 mod asked;
 mod breakpoints;
@@ -43,115 +43,112 @@ use novamind_session::{Change, RunDatabase, Session, rows_as_json};
 use novamind_study::CodeCheck;
 use novamind_tools::{AnyTool, Kind, Module, ToolId};
 
-/// Words that run a week: the command, and the tool as agents call it.
+/// Commands that simulate a week: the plain-mode command and the names of the tool.
 const NEXT: [&str; 3] = ["next", "next-week", "next_week"];
 
-/// Commands that are no tools.
+/// Commands that are not tools, with their help. Aliases have no help.
 const COMMANDS: &[(&str, &str)] = &[
-    ("sql", "sql SELECT …             ask the database (also: query)"),
-    ("queries", "queries [NAME]           the library of queries, or the result of one of them"),
-    ("next", "next \"WHY\" naive          file a rationale and forecasts, run a week (also: next-week)"),
-    ("dashboard", "dashboard                the dashboard of the last week"),
-    ("status", "status                   run, day, cash, runway, subscribers and what waits"),
+    ("sql", "sql SELECT …             query the database (also: query)"),
+    ("queries", "queries [NAME]           list the library of queries, or run one of them"),
+    (
+        "next",
+        "next \"WHY\" naive          submit a rationale and forecasts, simulate a week (also: next-week)",
+    ),
+    ("dashboard", "dashboard                show the dashboard of the last week"),
+    ("status", "status                   show run, day, cash, runway, subscribers and waiting threads"),
     (
         "inbox",
-        "inbox [all] [where …]    threads that wait for an answer; inbox NUMBER reads that of one company",
+        "inbox [all] [where …]    list threads that wait for an answer; inbox NUMBER shows the thread of one company",
     ),
-    ("thread", "thread NUMBER            one thread, turn by turn"),
-    ("rules", "rules [send] RULES       what rules would send to waiting threads; with send, sends it"),
+    ("thread", "thread NUMBER            show one thread, turn by turn"),
+    (
+        "rules",
+        "rules [send] RULES       preview what rules would send to waiting threads; with send, send it",
+    ),
     (
         "needs",
-        "needs                    what needs you, urgent first, then by money at risk, with the call that addresses it",
+        "needs                    list problems that need action, urgent ones first, then by money at risk, each with a call that addresses it",
     ),
-    (
-        "fit",
-        "fit [GROUP]              what each group wants beside what the plans offer it, and what is missing",
-    ),
+    ("fit", "fit [GROUP]              compare the requirements of each group with the plans"),
     (
         "leads",
-        "leads [GROUP]            leads by group, paid and by word of mouth, and what a lead and a first bill cost",
+        "leads [GROUP]            show leads by group, paid and by word of mouth, and the cost per lead and per first bill",
     ),
     (
         "curve",
-        "curve GROUP [PRICE QUALITY] quality that leads require at a price, and what would come of a price and a quality",
+        "curve GROUP [PRICE QUALITY] show the quality that leads require at a price, and the expected result of a price and a quality",
     ),
-    ("changes", "changes                  settings changed since the last week"),
-    (
-        "check",
-        "check CALL               what a call would do and cost, the margins or the spread that follow; nothing is done",
-    ),
+    ("changes", "changes                  list settings changed since the last week"),
+    ("check", "check CALL               preview the effect and cost of a call without making it"),
     ("undo", "undo                     undo the last setting of this week"),
     ("redo", "redo                     redo what undo reverted"),
-    ("history", "history [N]              the last N confirmed actions and weeks (20)"),
-    ("report", "report [week|run]        what changed in the last week; or the story of the run"),
+    ("history", "history [N]              list the last N confirmed actions and weeks (20)"),
+    ("report", "report [week|run]        report on the last week, or on the whole run"),
     (
         "why",
-        "why FIGURE [WEEK]        how much of the change of a week's figure each cause brought: why churn(S1) 44",
+        "why FIGURE [WEEK]        compute how much each cause changed a figure of a week: why churn(S1) 44",
     ),
-    (
-        "whatif",
-        "whatif from WEEK: EDITS   what would have been under other decisions; whatif WEEK lists what was decided",
-    ),
+    ("whatif", "whatif from WEEK: EDITS   re-simulate with other decisions; whatif WEEK lists the decisions"),
     ("memo", "memo [TEXT]              show the notes of the run, or add a line"),
-    ("tools", "tools [NAME]             the tools, or one of them"),
-    ("tables", "tables [NAME]            the tables, or one of them"),
-    ("explain", "explain TERM             what a term, tool, argument, table or column means (also: what)"),
-    ("glossary", "glossary [WORD]          every term, one per line, or those with a word"),
-    ("vars", "vars                     the current day, as get_vars returns it"),
+    ("tools", "tools [NAME]             list the tools, or show one of them"),
+    ("tables", "tables [NAME]            list the tables, or show one of them"),
+    ("explain", "explain TERM             explain a term, tool, argument, table or column (also: what)"),
+    ("glossary", "glossary [WORD]          list all terms, or those that contain a word"),
+    ("vars", "vars                     show the current day, as get_vars returns it"),
     (
         "branch",
         "branch WEEK [keep]       continue in a branch from the start of that week; keep: with the decisions made since",
     ),
-    ("branches", "branches                 the tree of branches in which the run stands"),
-    ("step", "step [DAYS]              debug: run single days (1)"),
+    ("branches", "branches                 show the tree of related branches"),
+    ("step", "step [DAYS]              debug: simulate single days (1)"),
     (
         "xray",
-        "xray VIEW …              debug runs and runs that are over: hidden state, view by view; help xray lists the views",
+        "xray VIEW …              debug and finished runs: show hidden state; help xray lists the views",
     ),
     (
         "lens",
-        "lens CUSTOMER [DAY]      the same: a customer from within, and what would have turned its decision",
+        "lens CUSTOMER [DAY]      the same: show the state of a customer, and what would have changed its decision",
     ),
     (
         "break",
-        "break [CONDITION]        the same: stop run where a condition becomes true; the list; break clear N|all removes",
+        "break [CONDITION]        the same: stop run when a condition becomes true; list; break clear N|all removes",
     ),
+    ("run", "run DAYS [until …]       debug: simulate days until a breakpoint or the condition becomes true"),
     (
-        "run",
-        "run DAYS [until …]       debug: run days, at most to the first on which a breakpoint or the condition becomes true",
+        "since",
+        "since [CONDITION|N]      debug and finished runs: show since when a condition or a breakpoint is true or false",
     ),
-    (
-        "back",
-        "back [CONDITION|N]       debug runs and runs that are over: since when a condition or a breakpoint is true or false",
-    ),
-    ("find", "find CONDITION           the same: the days on which a condition became true"),
+    ("find", "find CONDITION           the same: list the days on which a condition became true"),
     (
         "who",
-        "who FIGURE [DAY]         the same: who wrote a figure on a day, with amounts: who reputation(S3) 84, who cash",
+        "who FIGURE [DAY]         the same: list the mechanisms that changed a figure on a day: who reputation(S3) 84, who cash",
     ),
-    ("diff", "diff DAY DAY             the same: what differs between the ends of two days"),
+    ("diff", "diff DAY DAY             the same: list the differences between the ends of two days"),
     (
         "lesson",
-        "lesson [next]            lessons: the task, its goals and what they stand at; next: the next part",
+        "lesson [next]            lessons: show the task, its goals and their values; next: start the next part",
     ),
     ("guess", "guess ANSWER             lessons: answer the question of the step"),
-    ("hint", "hint                     lessons: the next hint of the step"),
+    ("hint", "hint                     lessons: show the next hint of the step"),
+    ("debrief", "debrief                  lessons: compare a finished part with the reference plays"),
+    ("retry", "retry [STEP]             lessons: restart a step"),
     (
-        "debrief",
-        "debrief                  lessons: what came of a part that is over, beside the good and the bad play",
+        "set",
+        "set KEY VALUE [from DAY] debug: set a parameter; set alone lists the differences from the scenario",
     ),
-    ("again", "again [STEP]             lessons: try a step again from its beginning"),
-    ("set", "set KEY VALUE [from DAY] debug: set a parameter; set alone lists what differs"),
-    ("help", "help [NAME]              this list, or help on one command, tool or table"),
-    ("pause", "pause [REASON]           stop the clock for a break; only resume, help and quit work then"),
-    ("resume", "resume                   start the clock again"),
+    ("help", "help [NAME]              show this list, or help on one command, tool or table"),
+    ("pause", "pause [REASON]           stop the clock for a break; then only resume, help and quit work"),
+    ("resume", "resume                   restart the clock"),
     ("quit", "quit                     leave; everything confirmed is saved (also: exit)"),
     ("query", ""),
     ("next-week", ""),
     ("what", ""),
+    // Names of earlier versions.
+    ("again", ""),
+    ("back", ""),
 ];
 
-/// Commands that show something and change nothing.
+/// Commands that only show something. Their use is recorded.
 const LOOKS: &[&str] = &[
     "dashboard",
     "status",
@@ -171,26 +168,26 @@ const LOOKS: &[&str] = &[
     "help",
 ];
 
-/// The session and how the dialogue reaches it.
+/// Executes commands on a session.
 pub struct Interpreter {
     /// The run.
     pub session: Session,
     library: Library,
     watch: Watch,
-    /// A person types and can be asked.
+    /// Whether a person types and can be asked.
     pub(super) prompts: bool,
-    /// Says whether a word is the experimenter's code; none where there is no experimenter.
+    /// Checks the experimenter's code. `None` if there is no experimenter.
     pub(super) code_check: Option<CodeCheck>,
-    /// A participant of a study is led: some commands are not theirs.
+    /// Whether the player is a participant of a study, for whom some commands are not available.
     pub(super) leads_participant: bool,
-    /// What was simulated to answer the last question why.
+    /// Simulations of the last `why` question.
     causes_kept: LastRead<Causes>,
-    /// And the last question what would have been.
+    /// Simulations of the last `whatif` question.
     branches_kept: LastRead<WhatIf>,
 }
 
 impl Interpreter {
-    /// An interpreter with named queries; `prompts` says that a person types and can be asked.
+    /// Creates an interpreter. `prompts` states that a person types and can be asked.
     pub fn new(mut session: Session, library: Library, watch: Watch, prompts: bool) -> Interpreter {
         session.answer_companies_by(novamind_rules::answers_to_companies);
         Interpreter {
@@ -205,10 +202,10 @@ impl Interpreter {
         }
     }
 
-    /// Does what a line says; none for empty lines and comments.
+    /// Executes a line. Returns `None` for empty lines and comments.
     ///
     /// # Errors
-    /// The input fails while a question waits for its answer.
+    /// Reading the answer to a question fails.
     pub fn answer(&mut self, line: &str, input: &mut Lines) -> io::Result<Option<Answer>> {
         let parsed = grammar::parse(line);
         if let Ok(line) = &parsed
@@ -229,9 +226,9 @@ impl Interpreter {
         Ok(Some(answer.naming_the_word_in(line)))
     }
 
-    /// A command with the rest of its line as it stands.
+    /// Executes a command that takes the rest of its line as text.
     fn text(&mut self, word: &str, rest: &str, line: &str) -> Answer {
-        // Columns are those of the line.
+        // Columns are counted in the whole line.
         let column = line.trim_end().chars().count() - rest.chars().count() + 1;
         match word {
             "inbox" => self.inbox_where(rest, column),
@@ -246,7 +243,7 @@ impl Interpreter {
             "pause" => self.pause(rest),
             "break" => self.breakpoint(rest, column).unwrap_or_else(usage),
             "run" => self.run_days(rest, column).unwrap_or_else(usage),
-            "back" => self.back(rest, column).unwrap_or_else(usage),
+            "since" | "back" => self.back(word, rest, column).unwrap_or_else(usage),
             "find" => self.find_days(rest, column).unwrap_or_else(usage),
             "who" => self.who(rest, column).unwrap_or_else(usage),
             "resume" => self.resume(rest),
@@ -257,7 +254,7 @@ impl Interpreter {
     fn query(&mut self, sql: &str, via: QuerySource) -> Answer {
         let answer =
             self.session.complete_database().and_then(RunDatabase::interrupt).and_then(|interrupt| {
-                // What is stopped from here on is this query, though it has not begun.
+                // From here on a signal stops this query, even though it has not started.
                 let ticket = interrupt.ticket();
                 self.watch.enter_query(interrupt);
                 self.session.query_as(Some(ticket), sql, via)
@@ -278,7 +275,7 @@ impl Interpreter {
         answer
     }
 
-    /// Records that something was looked at.
+    /// Records that the player viewed something.
     fn note_look(&mut self, word: &str, arguments: &[Argument]) {
         let words = arguments.iter().map(|argument| match &argument.value {
             Value::String(text) => text.clone(),
@@ -337,7 +334,7 @@ impl Interpreter {
             "lesson" => self.lesson(arguments),
             "guess" => self.guess(arguments),
             "hint" => none(arguments).map(|()| self.hint()),
-            "again" => self.again(arguments),
+            "retry" | "again" => self.again(word, arguments),
             "debrief" => none(arguments).map(|()| self.debrief()),
             "branches" => none(arguments).map(|()| self.branches()),
             "xray" => self.xray(arguments),
@@ -372,7 +369,7 @@ impl Interpreter {
         }
     }
 
-    /// A warning where the project that was started runs beyond the last day.
+    /// Returns a warning if the started project ends after the last day.
     fn late_projects(&self, started: &novamind_tools::Answer) -> Vec<String> {
         let novamind_tools::Answer::StartResearchProject(started) = started else { return Vec::new() };
         let last_day = self.session.manifest().days;
@@ -405,7 +402,7 @@ impl Interpreter {
     }
 }
 
-/// The tool that a word names, with or without its module; next_week has a command of its own.
+/// Returns the tool of a name, with or without its module. `next_week` and `query` are separate commands.
 fn tool_called(word: &str) -> Option<&'static dyn AnyTool> {
     let (module, name) = match word.split_once('.') {
         Some((module, name)) => (Some(module), name),
@@ -417,22 +414,21 @@ fn tool_called(word: &str) -> Option<&'static dyn AnyTool> {
         .filter(|tool| module.is_none_or(|module| fits(module, tool.spec().module)))
 }
 
-/// The arguments of a call; where they cannot be read, with a call that can.
+/// Reads the arguments of a call. The error includes an example call.
 fn read_arguments(tool: &'static dyn AnyTool, arguments: &[Argument]) -> Result<Value, Problem> {
     as_object(arguments, only_required(tool)).map_err(|problem| {
         let (spec, text) = (tool.spec(), problem.text);
-        Problem { text: format!("{text}; for instance {} {}", spec.name(), spec.example), ..problem }
+        Problem { text: format!("{text}; example: {} {}", spec.name(), spec.example), ..problem }
     })
 }
 
-/// What was restored, one change in a line.
+/// Lists the restored changes, one per line.
 fn in_words(what: &str, changes: &[Change]) -> String {
     let lines: String = changes.iter().map(|change| format!("{}\n", readings::change(change))).collect();
     format!("{what}\n{lines}")
 }
 
-/// The argument of a tool that may be given without its name: the only required one, the one that is the whole, or the
-/// only one at all.
+/// Returns the argument that may be given without its name: the only required one, the whole object, or the only one.
 fn only_required(tool: &'static dyn AnyTool) -> Option<&'static str> {
     let mut required = tool.spec().arguments.iter().filter(|argument| argument.required);
     let only = required.next().filter(|_| required.next().is_none()).map(|argument| argument.name);
@@ -449,7 +445,7 @@ fn unknown(word: &str, column: usize) -> Problem {
     let name = word.rsplit('.').next().unwrap_or(word);
     if novamind_tools::find(name).is_some_and(|tool| tool.spec().kind == Kind::Time) {
         let text = format!(
-            "{word} cannot be called by its name here; next \"WHY\" naive runs a week, and help next \
+            "{word} is not a command in plain mode; next \"WHY\" naive simulates a week, and help next \
              explains more"
         );
         return Problem { text, column };
@@ -478,16 +474,16 @@ fn none(arguments: &[Argument]) -> Result<(), Problem> {
     }
 }
 
-/// At most one name.
+/// Parses at most one name.
 fn name(arguments: &[Argument]) -> Result<Option<&str>, Problem> {
     match arguments {
         [] => Ok(None),
         [Argument { key: None, value: Value::String(name), .. }] => Ok(Some(name)),
-        _ => Err(problem(arguments, "this command takes one name or none")),
+        _ => Err(problem(arguments, "this command takes at most one name")),
     }
 }
 
-/// At most one whole number from 1.
+/// Parses at most one whole number from 1.
 fn count(arguments: &[Argument]) -> Result<Option<u32>, Problem> {
     let number = |value: &Value| {
         value.as_u64().filter(|number| *number > 0).and_then(|number| u32::try_from(number).ok())
@@ -495,6 +491,6 @@ fn count(arguments: &[Argument]) -> Result<Option<u32>, Problem> {
     match arguments {
         [] => Ok(None),
         [Argument { key: None, value, .. }] if number(value).is_some() => Ok(number(value)),
-        _ => Err(problem(arguments, "this command takes one whole number of at least 1, or none")),
+        _ => Err(problem(arguments, "this command takes at most one argument, a whole number from 1")),
     }
 }

@@ -1,31 +1,31 @@
-//! How a dialogue ends: its name in answers, its cause in the record, its exit code.
+//! The ends of a plain-mode session: names in answers, causes in the record, exit codes.
 
 use novamind_record::trajectory::record::LeavingCause;
 
-/// Number of the signal that a terminal sends when it is closed.
+/// Number of the signal for a closed terminal.
 const HANGUP: i32 = 1;
 
-/// How a dialogue ended.
+/// How a session ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
-    /// The person left.
+    /// The player left.
     Quit,
-    /// There are no more lines.
+    /// The input ended.
     InputOver,
-    /// A line was refused, and the first refusal ends the dialogue.
+    /// A line was rejected with `--strict`.
     Strict,
-    /// The run's file is no longer there.
+    /// The trajectory of the run is no longer there.
     RecordLost,
-    /// A signal asked for it.
+    /// A signal was received.
     Signal(i32),
-    /// The run of a study is over, and its questions are answered.
+    /// The run of a study is over and its questions are answered.
     Over,
-    /// The person withdrew from the study.
+    /// The participant withdrew from the study.
     Withdrawn,
 }
 
 impl End {
-    /// Name in the answers.
+    /// Returns the name in answers.
     pub fn id(self) -> &'static str {
         match self {
             End::Quit => "quit",
@@ -38,13 +38,13 @@ impl End {
         }
     }
 
-    /// Cause in the record.
+    /// Returns the cause in the record.
     pub fn cause(self) -> LeavingCause {
         match self {
             End::Quit | End::Over => LeavingCause::Quit,
             End::InputOver => LeavingCause::EndOfInput,
             End::Strict => LeavingCause::Strict,
-            // No line can say it.
+            // Without its file the record cannot be written.
             End::RecordLost => LeavingCause::Quit,
             End::Signal(HANGUP) => LeavingCause::Hangup,
             End::Signal(_) => LeavingCause::Signal,
@@ -52,7 +52,7 @@ impl End {
         }
     }
 
-    /// Exit code.
+    /// Returns the exit code.
     pub fn code(self) -> u8 {
         match self {
             End::Quit | End::InputOver | End::Over | End::Withdrawn => 0,

@@ -5,16 +5,16 @@ use serde_json::{Map, Value};
 use novamind_base::notation::written::Reader;
 pub use novamind_base::notation::written::{Argument, Problem};
 
-/// What a line says.
+/// A parsed line.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Line {
-    /// Nothing: empty, or a comment.
+    /// An empty line or a comment.
     Empty,
-    /// A command that takes the rest of the line as it stands.
+    /// A command that takes the rest of the line as text.
     Text {
         /// First word.
         word: String,
-        /// The rest, without blanks around it.
+        /// The rest, trimmed.
         rest: String,
     },
     /// A command or tool with arguments.
@@ -28,10 +28,10 @@ pub enum Line {
     },
 }
 
-/// Commands whose text is the rest of the line as it stands.
-const TEXT_COMMANDS: [&str; 17] = [
+/// Commands that take the rest of the line as text.
+const TEXT_COMMANDS: [&str; 18] = [
     "sql", "query", "memo", "explain", "what", "glossary", "check", "rules", "why", "whatif", "pause",
-    "resume", "break", "run", "back", "find", "who",
+    "resume", "break", "run", "since", "back", "find", "who",
 ];
 
 /// Reads a line.
@@ -57,18 +57,18 @@ pub fn parse(line: &str) -> Result<Line, Problem> {
     Ok(Line::Call { word, column, arguments: reader.arguments()? })
 }
 
-/// Whether the text after `inbox` holds a condition: `where …`, or `all where …`.
+/// Returns whether the text after `inbox` is a condition: `where …` or `all where …`.
 fn has_condition(rest: &str) -> bool {
     rest.split_whitespace().find(|word| *word != "all") == Some("where")
 }
 
-/// What follows in `xray sql …`: a statement, with a day before it or none; none in another view of the x-ray.
+/// Returns the statement of `xray sql …` with its optional day. Returns `None` for other views.
 pub fn statement_of_xray(rest: &str) -> Option<&str> {
     let rest = rest.trim_start().strip_prefix("sql")?;
     (rest.is_empty() || rest.starts_with(char::is_whitespace)).then(|| rest.trim())
 }
 
-/// The statement after `sql` and `query`: as it stands, or as the only argument of the tool's call.
+/// Returns the statement after `sql` and `query`: the text itself, or the only argument of a call of the tool.
 pub fn statement(rest: &str) -> String {
     let is_call = rest.starts_with(['{', '(']) || rest.starts_with("sql=");
     if let Some(Ok(Line::Call { arguments, .. })) = is_call.then(|| parse(&format!("call {rest}")))
@@ -80,8 +80,8 @@ pub fn statement(rest: &str) -> String {
     rest.to_owned()
 }
 
-/// Puts arguments into the object that a tool takes. One object without a name is all of them; one other value
-/// without a name is the tool's only required argument.
+/// Combines arguments into the object that a tool takes. A single unnamed object holds all of them; another single unnamed value is
+/// the argument `only_required`.
 pub fn as_object(arguments: &[Argument], only_required: Option<&str>) -> Result<Value, Problem> {
     if let [Argument { key: None, value: Value::Object(map), .. }] = arguments {
         return Ok(Value::Object(map.clone()));

@@ -1,34 +1,34 @@
-//! Reading lines: continued ones, byte order marks, carriage returns, too long and unreadable ones.
+//! Reads lines: joins continued lines, removes byte order marks and carriage returns, and rejects long or invalid lines.
 
 use std::io::{self, BufRead, Read as _};
 
-/// Longest line in bytes.
+/// Maximum length of a line in bytes.
 const LONGEST: usize = 1 << 20;
 
-/// One logical line, or what came instead.
+/// The result of reading a logical line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Read {
-    /// A line without its end; continued lines are joined by line breaks.
+    /// A line without its end. Continued lines are joined by line breaks.
     Line(String),
-    /// A line that cannot be read, and why.
+    /// A line that cannot be read, with the reason.
     Unreadable(String),
     /// The end of input.
     End,
 }
 
-/// Input with line numbers.
+/// An input with line numbers.
 pub struct Input<R> {
     source: R,
     lines: u32,
 }
 
 impl<R: BufRead> Input<R> {
-    /// Input from a source.
+    /// Creates an input.
     pub fn new(source: R) -> Input<R> {
         Input { source, lines: 0 }
     }
 
-    /// Number of the next line, from 1.
+    /// Returns the number of the next line, from 1.
     pub fn next_number(&self) -> u32 {
         self.lines + 1
     }
@@ -59,7 +59,7 @@ impl<R: BufRead> Input<R> {
         }
     }
 
-    /// Reads one line of the source as it stands.
+    /// Reads one line of the source without joining.
     fn physical(&mut self) -> io::Result<Read> {
         let mut bytes = Vec::new();
         let limit = LONGEST as u64 + 2;

@@ -1,7 +1,7 @@
-//! The same game line by line: for pipes, scripts and screen readers (docs/interfaces/plain-mode.md).
+//! Plain mode: the game line by line, for pipes, scripts and screen readers (docs/interfaces/plain-mode.md).
 //!
-//! One command per line, an answer for each before the next is read, no colour, no cursor movement. Every
-//! answer goes to standard output, refusals too, and ends with an empty line.
+//! Each line holds one command and is answered before the next one is read. There are no colors and no cursor movements. Every
+//! answer, including rejections, goes to standard output and ends with an empty line.
 
 mod answers;
 mod commands;
@@ -34,18 +34,18 @@ use novamind_record::trajectory::record::LeavingCause;
 use novamind_session::{Interface, Session};
 use novamind_study::Study;
 
-/// How answers look and when the dialogue ends.
+/// Output options of plain mode.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Style {
     /// One JSON object per line.
     pub json: bool,
     /// Print each input line before its answer.
     pub echo: bool,
-    /// End at the first refused or unreadable line.
+    /// Stop at the first rejected or invalid line.
     pub strict: bool,
 }
 
-/// Plays on standard input and output; returns the exit code.
+/// Plays on standard input and output. Returns the exit code.
 ///
 /// # Errors
 /// Standard input or output fails.
@@ -54,7 +54,7 @@ pub fn play(session: Session, library: Library, style: Style) -> io::Result<u8> 
     dialogue(session, library, style, None, &mut lines).map(|(end, _)| end.code())
 }
 
-/// A dialogue about a run, until the person or the input leaves it.
+/// Answers lines until the player or the input ends.
 fn dialogue(
     mut session: Session,
     library: Library,
@@ -68,18 +68,18 @@ fn dialogue(
     interpreter.leads_participant = study.is_some();
     let mut out = io::stdout();
     let end = converse(&mut interpreter, lines, &mut out, style, study);
-    // Whoever cannot be answered any more has gone.
+    // If the output fails, the player has gone.
     interpreter.session.activity().leave(end.as_ref().map_or(LeavingCause::Hangup, |end| end.cause()));
-    // Everything answered `ok` is on the disk already; what is left are rows that can be made again.
+    // Every answer `ok` is already on disk. Only derived rows can be missing, and they can be rebuilt.
     let _ = interpreter.session.save();
     let end = end?;
     if end == End::Withdrawn {
-        // Nothing of the run is kept, so nothing says that it is.
+        // The run was erased, so nothing claims that it was saved.
         return Ok((end, interpreter.session));
     }
     let told = writeln!(out, "{}", farewell(&interpreter.session, style, end)).and_then(|()| out.flush());
     match end {
-        // The terminal may be what has gone.
+        // The terminal may have gone.
         End::Signal(_) => {}
         _ => told?,
     }
@@ -126,7 +126,7 @@ fn converse(
             if withdraws(style, lines)? {
                 return Ok(End::Withdrawn);
             }
-            let text = "nothing was erased; the study goes on".to_owned();
+            let text = "nothing was erased; the study continues".to_owned();
             let reply = Answer::done("withdraw", text, json!({ "withdrawn": false }));
             answer(out, style, number, None, &reply, day)?;
             continue;
@@ -148,7 +148,7 @@ fn converse(
     }
 }
 
-/// Asks the questions of a study that are due; how the dialogue ends, if it ends with them.
+/// Asks the questions of a study that are due. Returns the end of the session if the participant leaves.
 fn ask_questions(
     interpreter: &mut Interpreter,
     lines: &mut Lines,
@@ -163,10 +163,10 @@ fn ask_questions(
     Ok(left.or_else(|| interpreter.session.ended().map(|_| End::Over)))
 }
 
-/// Asks whether a participant really withdraws.
+/// Asks for confirmation of a withdrawal.
 fn withdraws(style: Style, lines: &mut Lines) -> io::Result<bool> {
-    let question = "Withdrawing erases your runs of this study, for good. Type withdraw again to do so, \
-                    anything else to go on:";
+    let question = "Withdrawing permanently erases your runs of this study. Type withdraw again to confirm, \
+                    or anything else to continue:";
     if style.json {
         println!("{}", json!({ "event": "ask", "what": "withdraw", "text": question }));
     } else {
@@ -176,7 +176,7 @@ fn withdraws(style: Style, lines: &mut Lines) -> io::Result<bool> {
     Ok(matches!(lines.read()?, Read::Line(line) if line.trim() == "withdraw"))
 }
 
-/// Shows a prompt where a person sees it.
+/// Shows a prompt on a stream that the user sees.
 fn prompt(text: &str) -> io::Result<()> {
     let write = |out: &mut dyn Write| out.write_all(text.as_bytes()).and_then(|()| out.flush());
     if io::stdout().is_terminal() { write(&mut io::stdout()) } else { write(&mut io::stderr()) }
@@ -207,12 +207,12 @@ fn greet(out: &mut io::Stdout, session: &Session, style: Style) -> io::Result<()
         if !hides_result {
             writeln!(out, "{dashboard}")?;
         }
-        writeln!(out, "help lists the commands")?;
+        writeln!(out, "type help for the commands")?;
     }
     out.flush()
 }
 
-/// The seed after the name of a run; nothing where it stays hidden.
+/// Returns the seed after the run id, or nothing if it is hidden.
 fn seed_in_words(seed: Option<u64>) -> String {
     seed.map_or(String::new(), |seed| format!(" · seed {seed}"))
 }

@@ -1,4 +1,4 @@
-//! Lines as the dialogue waits for them: read on a thread of their own, so that a signal or a time limit ends the wait.
+//! Reads lines on a separate thread, so that a signal or a time limit can end the wait.
 
 use std::io;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -8,26 +8,26 @@ use super::ending::End;
 use super::input::{Input, Read};
 use super::signals::{Phase, Watch};
 
-/// What ends a wait.
+/// An event that ends a wait.
 enum Event {
-    /// A line, its number, or what came instead.
+    /// A line with its number.
     Line(u32, io::Result<Read>),
     /// A signal that asks to leave.
     Signal(i32),
 }
 
-/// Lines of the input, each read when it is asked for.
+/// Input lines, each read on request.
 pub struct Lines {
     wanted: Sender<()>,
     events: Receiver<Event>,
     watch: Watch,
-    /// A line was asked for and has not come.
+    /// A line was requested and has not arrived.
     asked: bool,
     number: u32,
 }
 
 impl Lines {
-    /// The lines of standard input; signals are watched for from now on.
+    /// Reads from standard input and starts watching for signals.
     pub fn of_standard_input() -> Lines {
         let (sender, events) = channel();
         let signals = sender.clone();
@@ -45,27 +45,27 @@ impl Lines {
         Lines { wanted, events, watch, asked: false, number: 1 }
     }
 
-    /// What watches for signals.
+    /// Returns the signal watch.
     pub fn watch(&self) -> Watch {
         self.watch.clone()
     }
 
-    /// How the dialogue ends when there are no more lines.
+    /// Returns how the session ends when there are no more lines.
     pub fn end(&self) -> End {
         self.watch.caught().map_or(End::InputOver, End::Signal)
     }
 
-    /// Number of the line that was read last, from 1.
+    /// Returns the number of the last line read, from 1.
     pub fn number(&self) -> u32 {
         self.number
     }
 
-    /// Whether a line was asked for and has not come yet.
+    /// Returns whether a requested line has not arrived yet.
     pub fn is_waiting(&self) -> bool {
         self.asked
     }
 
-    /// Waits for a line. A signal counts as the end of input, and the watch knows it.
+    /// Waits for a line. Returns the end of input after a signal, which the watch reports.
     ///
     /// # Errors
     /// The source fails.
@@ -77,7 +77,7 @@ impl Lines {
         }
     }
 
-    /// The same, at most for a while; none if nothing has come.
+    /// Waits for a line at most for a duration. Returns `None` if none arrived.
     ///
     /// # Errors
     /// The source fails.

@@ -18,24 +18,24 @@ use novamind_report::review::alike_lines;
 use novamind_session::{Session, TIME_LIMIT, Week};
 use novamind_tools::{FORECAST_KEYS, Forecast, Refusal};
 
-/// What is filed before a week.
+/// The submission before a week.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Filing {
-    /// Rationale and predictions as tools take them.
+    /// Rationale and predictions in the form of the tool.
     Given {
-        /// Why.
+        /// Rationale.
         rationale: Value,
         /// Forecasts.
         predictions: Value,
-        /// Filled by the naive projection.
+        /// Horizons that the naive projection filled.
         naive: [bool; 4],
     },
-    /// The person has to be asked.
+    /// The player must be asked.
     Ask,
 }
 
 impl Filing {
-    /// What is filed for somebody whose time is over.
+    /// Returns the submission after a time limit was reached.
     pub fn at_limit(session: &Session) -> Filing {
         let predictions = session.company().naive_forecasts().as_predictions();
         Filing::Given { rationale: json!(TIME_LIMIT), predictions, naive: [true; 4] }
@@ -47,7 +47,7 @@ pub fn read(arguments: &[Argument], session: &Session, prompts: bool) -> Result<
     let naive = session.company().naive_forecasts();
     let given = |rationale: Value, predictions: Value, naive| Filing::Given { rationale, predictions, naive };
     let is_naive = |argument: &Argument| argument.key.is_none() && argument.value == "naive";
-    // What a lesson fills in nobody has to type.
+    // The player need not type what the lesson fills in.
     let access = session.lesson().map(LessonStanding::access);
     let fills = access.is_some_and(LessonAccess::fills_forecasts);
     let left_out = || if fills { (naive.as_predictions(), [true; 4]) } else { (Value::Null, [false; 4]) };
@@ -85,13 +85,13 @@ pub fn read(arguments: &[Argument], session: &Session, prompts: bool) -> Result<
     }
 }
 
-/// What was given, with what stands for predictions that were left out.
+/// Returns a submission. `left_out` supplies the predictions if they were left out.
 fn filled_in(rationale: Value, given: Value, left_out: impl Fn() -> (Value, [bool; 4])) -> Filing {
     let (predictions, naive) = if given.is_null() { left_out() } else { (given, [false; 4]) };
     Filing::Given { rationale, predictions, naive }
 }
 
-/// Refuses an argument that the tool does not have.
+/// Checks that the tool has an argument of this name.
 fn known(name: &str, column: usize) -> Result<(), Problem> {
     if ["rationale", "predictions"].contains(&name) {
         return Ok(());
@@ -102,7 +102,7 @@ fn known(name: &str, column: usize) -> Result<(), Problem> {
     })
 }
 
-/// Twelve numbers: point, lower, upper of four horizons.
+/// Reads twelve numbers: point, lower, upper for four horizons.
 fn predictions(why: &Argument, numbers: &[Argument]) -> Result<Value, Problem> {
     let wrong = |column, text: String| Problem { text, column };
     if let Some(named) = std::iter::once(why).chain(numbers).find(|argument| argument.key.is_some()) {
@@ -114,7 +114,7 @@ fn predictions(why: &Argument, numbers: &[Argument]) -> Result<Value, Problem> {
     if numbers.len() != 12 {
         let column = numbers.last().unwrap_or(why).column;
         let text = format!(
-            "after the rationale, give exactly twelve numbers, point lower upper in 1, 4, 12 and 26 weeks, \
+            "after the rationale, give exactly twelve numbers, point lower upper for 1, 4, 12 and 26 weeks, \
              or naive; you gave {}",
             numbers.len()
         );
@@ -127,7 +127,7 @@ fn predictions(why: &Argument, numbers: &[Argument]) -> Result<Value, Problem> {
     Ok(FORECAST_KEYS.into_iter().zip(numbers.chunks(3)).map(one).collect())
 }
 
-/// Files and lets the week pass.
+/// Submits rationale and forecasts, and simulates a week.
 pub fn run(session: &mut Session, filing: Filing) -> Answer {
     let Filing::Given { rationale, predictions, naive } = filing else {
         return Answer::done("next", String::new(), Value::Null);
@@ -137,14 +137,14 @@ pub fn run(session: &mut Session, filing: Filing) -> Answer {
         Err(refusal) if refusal.code == "rationale_missing" => {
             let fills = session.lesson().is_some_and(|own| own.access().fills_forecasts());
             let form = if fills { "next \"WHY\"" } else { "next \"WHY\" naive" };
-            let message = format!("{}; write {form}, and help next says more", refusal.message);
+            let message = format!("{}; write {form}; help next explains more", refusal.message);
             Answer::refused("next", Refusal { message, ..refusal })
         }
         Err(refusal) => Answer::refused("next", refusal),
     }
 }
 
-/// What a week, or days, brought.
+/// Returns the answer after a week or single days.
 pub fn report(command: &str, session: &Session, week: &Week) -> Answer {
     let figures = &week.figures;
     let done = if command == "next" {
@@ -163,7 +163,7 @@ pub fn report(command: &str, session: &Session, week: &Week) -> Answer {
         signed_dollars(figures.cash_change)
     );
     if let Some(ended) = week.ended {
-        // A lesson has no score.
+        // Lessons have no score.
         let score = session.score().map_or(String::new(), |score| format!(" · score {}", dollars(score)));
         text += &format!("run ended: {} · day {}{score}\n", ended.id(), figures.day);
     }
@@ -173,7 +173,7 @@ pub fn report(command: &str, session: &Session, week: &Week) -> Answer {
     Answer::done(command, text, week.as_json())
 }
 
-/// What is said of the end where its result is not shown.
+/// Returns the answer at the end of a run whose result is hidden.
 fn over(command: &str, session: &Session, week: &Week) -> Answer {
     let mut text = match session.manifest().is_practice() {
         true => "the practice is over; the session comes next\n".to_owned(),
@@ -186,7 +186,7 @@ fn over(command: &str, session: &Session, week: &Week) -> Answer {
     Answer::done(command, text, object)
 }
 
-/// Asks the person; none when they cancel.
+/// Asks the player. Returns `None` if they cancel.
 ///
 /// # Errors
 /// The input or the prompt fails.
@@ -226,7 +226,7 @@ pub fn ask(session: &Session, input: &mut Lines) -> io::Result<Option<Filing>> {
     Ok(Some(Filing::Given { rationale: rationale.into(), predictions, naive }))
 }
 
-/// The rationale of a week; none when the person cancels.
+/// Asks for the rationale. Returns `None` if the player cancels.
 fn ask_why(input: &mut Lines) -> io::Result<Option<String>> {
     loop {
         match ask_line(input, "why (. cancels)> ")? {
@@ -236,7 +236,7 @@ fn ask_why(input: &mut Lines) -> io::Result<Option<String>> {
     }
 }
 
-/// One forecast and whether it is the naive one.
+/// Asks for one forecast. Also returns whether it is the naive one.
 fn ask_forecast(input: &mut Lines, weeks: u32, naive: Forecast) -> io::Result<Option<(Forecast, bool)>> {
     let whole = |value: f64| grouped(value, 0).replace(',', "");
     let text = format!(
@@ -271,16 +271,16 @@ fn read_forecast(line: &str, horizon_days: u32) -> Result<Forecast, String> {
             Err(format!("lower {lower} is above upper {upper}; point is {point}"))
         }
         Some([point, lower, upper]) if point < lower || point > upper => {
-            Err(format!("the point {point} lies outside {lower} to {upper}"))
+            Err(format!("the point {point} is outside {lower} to {upper}"))
         }
         Some([point, lower, upper]) => {
             Ok(Forecast { horizon_days, point: *point, lower: *lower, upper: *upper })
         }
-        _ => Err("give three numbers, point lower upper, for instance 931000 902000 960000; or enter for the naive ones".to_owned()),
+        _ => Err("give three numbers, point lower upper, for example 931000 902000 960000; or press enter for the naive ones".to_owned()),
     }
 }
 
-/// A line of the person; none for a dot and the end of input.
+/// Reads a line. Returns `None` for a dot and the end of input.
 fn ask_line(input: &mut Lines, text: &str) -> io::Result<Option<String>> {
     loop {
         prompt(text)?;
@@ -303,7 +303,7 @@ mod tests {
     use novamind_record::folder::configuration::Configuration;
     use novamind_session::{LessonEntry, NewRun};
 
-    /// The lesson of two weeks, in memory; its access may be another.
+    /// Creates a lesson of two weeks in memory with this access.
     fn in_lesson(access: &str) -> Session {
         let place = tempfile::tempdir().expect("a folder");
         let file = place.path().join("two-weeks.toml");
@@ -344,7 +344,7 @@ mod tests {
         assert_eq!(read(&[], &session, true), Ok(Filing::Ask));
         let nothing = read(&[], &session, false).expect("it is read");
         let refused = run(&mut session, nothing).as_text();
-        assert!(refused.contains("write next \"WHY\", and"), "{refused}");
+        assert!(refused.contains("write next \"WHY\"; help"), "{refused}");
         let filing = read(&[argument("because")], &session, false).expect("it is filed");
         assert!(run(&mut session, filing).is_ok());
     }

@@ -1,4 +1,4 @@
-//! The stopped clock and time limits in plain mode.
+//! Stopping the clock, and time limits, in plain mode.
 
 use std::time::Duration;
 
@@ -12,9 +12,9 @@ use novamind_record::trajectory::record::{Limit, LimitEvent};
 use novamind_session::TIME_LIMIT;
 use novamind_tools::Refusal;
 
-/// What can be done while the clock stands.
+/// Commands that work while the clock is stopped.
 const WHILE_STOPPED: [&str; 4] = ["resume", "help", "quit", "exit"];
-/// How often limits are looked at while a line is waited for.
+/// Interval between checks of the limits while waiting for a line.
 const BETWEEN_LOOKS: Duration = Duration::from_secs(1);
 
 impl Interpreter {
@@ -22,14 +22,14 @@ impl Interpreter {
     pub(super) fn pause(&mut self, reason: &str) -> Answer {
         match self.session.activity().stop_clock(Some(reason)) {
             Ok(()) => {
-                let text = "the clock is stopped; resume starts it again".to_owned();
+                let text = "the clock is stopped; resume restarts it".to_owned();
                 Answer::done("pause", text, json!({ "stopped": true }))
             }
             Err(refusal) => Answer::refused("pause", refusal),
         }
     }
 
-    /// `resume`, with the experimenter's code where a limit has stopped the clock.
+    /// `resume`, with the experimenter's code if a limit stopped the clock.
     pub(super) fn resume(&mut self, code: &str) -> Answer {
         let right = self.code_check.as_ref().is_none_or(|check| check(code));
         if self.session.log().is_held() && !right {
@@ -38,14 +38,14 @@ impl Interpreter {
         }
         match self.session.activity().start_clock() {
             Ok(stood) => {
-                let text = format!("the clock runs again; it stood for {stood:.0} s");
+                let text = format!("the clock is running; it was stopped for {stood:.0} s");
                 Answer::done("resume", text, json!({ "stood_seconds": stood }))
             }
             Err(refusal) => Answer::refused("resume", refusal),
         }
     }
 
-    /// Refuses everything that shows the run, or acts, while the clock stands.
+    /// Rejects commands that show the run or act on it while the clock is stopped.
     pub(super) fn refuse_while_stopped(&self, line: &Line) -> Option<Answer> {
         let word = match line {
             Line::Empty => return None,
@@ -54,11 +54,11 @@ impl Interpreter {
         if !self.session.log().clock_stands() || WHILE_STOPPED.contains(&word.as_str()) {
             return None;
         }
-        let text = "the clock is stopped: resume starts it; help and quit work, too";
+        let text = "the clock is stopped: type resume to restart it; help and quit work, too";
         Some(Answer::refused(word, Refusal::new("clock_stopped", text)))
     }
 
-    /// Tells of limits that are near or reached, and does what the rules say.
+    /// Reports limits that are near or reached, and applies their consequences.
     pub(super) fn check_limits(&mut self) -> Vec<Answer> {
         let told = self.session.activity().check_limits();
         told.into_iter().flat_map(|limit| self.reach(&limit)).collect()
@@ -72,28 +72,28 @@ impl Interpreter {
         let tell = |what: &str| Answer::done("limit", format!("time limit: {words}{what}"), data.clone());
         match limit.event {
             LimitEvent::Warned => vec![tell(&format!("; {follows}"))],
-            LimitEvent::Reminded => vec![tell("; please come to an end")],
+            LimitEvent::Reminded => vec![tell("; please finish soon")],
             LimitEvent::FiledNaively => {
                 let filing = Filing::at_limit(&self.session);
                 let filed = next::run(&mut self.session, filing);
-                vec![tell("; the week is filed with the naive projection"), filed]
+                vec![tell("; the week is submitted with the naive projection"), filed]
             }
             LimitEvent::Paused => {
                 let stopped = self.session.activity().stop_clock(Some(TIME_LIMIT));
                 let rest = if self.code_check.is_some() { "resume CODE" } else { "resume" };
                 let stopped = stopped.map_or("", |()| "; the clock is stopped");
-                vec![tell(&format!("{stopped}; {rest} starts it"))]
+                vec![tell(&format!("{stopped}; {rest} restarts it"))]
             }
         }
     }
 
-    /// How long to wait for a line before limits are looked at again; none where there are none.
+    /// Returns how long to wait for a line before the limits are checked again. Returns `None` if there are no limits.
     pub(super) fn patience(&self) -> Option<Duration> {
         let limits = !self.session.log().time_left().is_empty() && !self.session.log().clock_stands();
         limits.then_some(BETWEEN_LOOKS)
     }
 
-    /// What is asked for where a person types.
+    /// Returns the prompt.
     pub(super) fn prompt_text(&self) -> String {
         if self.session.log().clock_stands() {
             return "clock stopped> ".to_owned();
@@ -111,15 +111,15 @@ impl Interpreter {
         }
     }
 
-    /// A limit that has stopped the clock holds when the run is opened again.
+    /// Stops the clock again if a time limit had stopped it before the run was reopened.
     pub(super) fn hold_limit(&mut self) -> Option<Answer> {
         if !self.session.log().is_held() {
             return None;
         }
-        // It may stand already.
+        // The clock may already be stopped.
         let _ = self.session.activity().stop_clock(Some(TIME_LIMIT));
         let rest = if self.code_check.is_some() { "resume CODE" } else { "resume" };
-        let text = format!("a time limit has stopped the clock; {rest} starts it");
+        let text = format!("a time limit has stopped the clock; {rest} restarts it");
         Some(Answer::done("limit", text, json!({ "stopped": true })))
     }
 }

@@ -1,4 +1,4 @@
-//! Questions of a study, asked line by line between the commands.
+//! Questions of a study, asked between the commands.
 
 use std::io::{self, Write};
 
@@ -13,7 +13,7 @@ use novamind_record::clock::steady;
 use novamind_session::Session;
 use novamind_study::{DueQuestion, Form, Study};
 
-/// Asks everything that is due; how the dialogue ends, if it ends before all of it is answered.
+/// Asks all questions that are due. Returns the end of the session if the participant leaves before answering all of them.
 ///
 /// # Errors
 /// Standard input or output fails.
@@ -38,7 +38,7 @@ pub(super) fn ask_due(
     Ok(None)
 }
 
-/// Reads lines until one of them is an answer, or leaves. An answer is given once here: none replaces another.
+/// Reads lines until one is an answer or leaves. Unlike in the console, an answer cannot be changed.
 fn answer(
     due: &DueQuestion,
     session: &mut Session,
@@ -63,7 +63,7 @@ fn answer(
                 continue;
             }
             "" if !due.question.required => Ok(Value::Null),
-            "" => Err(format!("an answer is needed: {}", expected(&due.question.form))),
+            "" => Err(format!("an answer is required: {}", expected(&due.question.form))),
             typed => due.question.form.value(typed).map_err(|expected| format!("type {expected}")),
         };
         match value {
@@ -77,7 +77,7 @@ fn answer(
     }
 }
 
-/// Says why a line is no answer.
+/// Prints why a line is not an answer.
 fn refuse(due: &DueQuestion, problem: &str, style: Style) -> io::Result<()> {
     if style.json {
         println!("{}", json!({ "event": "question_refused", "id": due.question.id, "error": problem }));
@@ -106,13 +106,13 @@ fn show(due: &DueQuestion, style: Style) -> io::Result<()> {
         for line in choices(&question.form) {
             println!("  {}", printable(&line));
         }
-        let pass = if question.required { "" } else { ", or an empty line to pass" };
+        let pass = if question.required { "" } else { ", or an empty line to skip" };
         println!("type {}{pass}; quit leaves, withdraw erases what you did", expected(&question.form));
     }
     io::stdout().flush()
 }
 
-/// What can be chosen, a line each.
+/// Returns the choices, one per line.
 fn choices(form: &Form) -> Vec<String> {
     match form {
         Form::Likert { points, low, high } => {
@@ -126,7 +126,7 @@ fn choices(form: &Form) -> Vec<String> {
     }
 }
 
-/// What is an answer; an impossible one says so best.
+/// Describes valid answers, as the error for an invalid one does.
 fn expected(form: &Form) -> String {
     form.value("").err().unwrap_or_default()
 }

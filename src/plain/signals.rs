@@ -1,20 +1,20 @@
-//! Ctrl-c and termination: a query or a simulation of causes is cancelled, a week is waited for, a prompt is left at once.
+//! Ctrl-c and termination: cancels a query or a simulation, waits for the end of a week, and leaves a prompt at once.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use novamind_database::Interrupt;
 
-/// What the dialogue is doing.
+/// The current activity of plain mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
     /// Waiting for a line.
     Prompt,
-    /// Working on something that ends by itself.
+    /// Working on something that ends soon.
     Working,
-    /// Asking the database.
+    /// Querying the database.
     Query,
-    /// Simulating something that can be stopped.
+    /// Running a simulation that can be stopped.
     Simulation,
 }
 
@@ -25,16 +25,16 @@ pub struct Watch(Arc<Mutex<State>>);
 struct State {
     phase: Phase,
     interrupt: Option<Interrupt>,
-    /// Stops what is simulated.
+    /// Stops the simulation.
     stop: Arc<AtomicBool>,
     caught: Option<i32>,
-    /// The dialogue was asked to leave its prompt.
+    /// Whether a signal asked to leave the prompt.
     leaving: bool,
 }
 
 impl Watch {
-    /// Starts watching; a prompt is told of signals. Where signals cannot be watched they end the program as ever; nothing
-    /// is lost by it.
+    /// Starts watching. `prompt` is called for signals at a prompt. If signals cannot be watched, they end the program, which loses
+    /// nothing.
     pub fn start(prompt: impl Fn(i32) + Send + 'static) -> Watch {
         let state = State {
             phase: Phase::Working,
@@ -67,7 +67,7 @@ impl Watch {
     fn handle(&self, signal: i32, by_key: bool, prompt: &impl Fn(i32)) {
         let mut state = self.state();
         if state.leaving {
-            // A disk that hangs keeps the last line; everything confirmed is on it already.
+            // A hanging disk only blocks the last line; everything confirmed is already written.
             std::process::exit(128 + signal);
         }
         if state.phase == Phase::Prompt {
@@ -90,12 +90,12 @@ impl Watch {
         state.caught = Some(signal);
     }
 
-    /// Says what the dialogue is doing now.
+    /// Sets the current activity.
     pub fn enter(&self, phase: Phase) {
         self.state().phase = phase;
     }
 
-    /// Says that a line is waited for. False if a signal came before: nobody would end the wait.
+    /// Sets the activity to waiting for a line. Returns false if a signal came before, because nothing would end the wait.
     pub fn enter_prompt(&self) -> bool {
         let mut state = self.state();
         let waits = state.caught.is_none();
@@ -105,25 +105,25 @@ impl Watch {
         waits
     }
 
-    /// Says that a query is asked, which this stops.
+    /// Sets the activity to a query, which `interrupt` stops.
     pub fn enter_query(&self, interrupt: Interrupt) {
         let mut state = self.state();
         (state.phase, state.interrupt) = (Phase::Query, Some(interrupt));
     }
 
-    /// Says that something is simulated; what is returned becomes true when it is to stop.
+    /// Sets the activity to a simulation. The returned flag becomes true when it must stop.
     pub fn enter_stoppable(&self) -> Arc<AtomicBool> {
         let mut state = self.state();
         (state.phase, state.stop) = (Phase::Simulation, Arc::default());
         state.stop.clone()
     }
 
-    /// A signal has ended the wait at a prompt.
+    /// Records a signal that ended the wait at a prompt.
     pub fn catch(&self, signal: i32) {
         self.state().caught = Some(signal);
     }
 
-    /// The signal that asked to leave, if one did.
+    /// Returns the signal that asked to leave, if any.
     pub fn caught(&self) -> Option<i32> {
         self.state().caught
     }
@@ -141,8 +141,8 @@ mod tests {
     #[cfg(unix)]
     #[test]
     fn a_signal_that_comes_just_before_the_prompt_keeps_nobody_waiting() {
-        let watch = Watch::start(|_| panic!("nobody waits"));
-        watch.handle(15, false, &|_| panic!("nobody waits"));
+        let watch = Watch::start(|_| panic!("no prompt is waiting"));
+        watch.handle(15, false, &|_| panic!("no prompt is waiting"));
         assert!(!watch.enter_prompt());
         assert_eq!(watch.caught(), Some(15));
     }

@@ -1,4 +1,4 @@
-//! The way of a participant through a study, line by line: label, consent, practice, session, questions, thanks.
+//! A participant's session in a study, line by line: label, consent, practice, session, questions, thanks.
 
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -18,9 +18,9 @@ use novamind_report::prose::as_plain;
 use novamind_session::Session;
 use novamind_study::{DECLINED, NextStep, Study, Visit};
 
-/// What ends a visit early.
+/// The reason why a visit ends early.
 enum Stop {
-    /// The person or the input left; the exit code.
+    /// The participant or the input left, with the exit code.
     Left(u8),
     /// A run or a file cannot be read.
     Run(RunError),
@@ -40,7 +40,7 @@ impl From<io::Error> for Stop {
     }
 }
 
-/// Leads a participant through a study; returns the exit code. `again` is the command that leads them once more.
+/// Guides a participant through a study. Returns the exit code. `again` is the command that continues the study.
 ///
 /// # Errors
 /// A run or a file of the study cannot be read; standard input or output fails.
@@ -60,13 +60,13 @@ pub fn visit(
     }
 }
 
-/// Columns of a text that is read.
+/// Columns of wrapped text.
 const WIDEST: usize = 78;
 
-/// How a run of a study can be left.
-const WAYS_OUT: &str = "quit leaves it, and everything confirmed is kept.\n\
-                        withdraw erases everything you did in this study. Both work at questions, too.\n\
-                        pause stops the clock for a break, resume starts it again.";
+/// How to leave a run of a study.
+const WAYS_OUT: &str = "quit leaves the run; everything confirmed is saved.\n\
+                        withdraw erases everything you did in this study. Both also work at questions.\n\
+                        pause stops the clock for a break, resume restarts it.";
 
 struct Host<'a> {
     lines: Lines,
@@ -82,7 +82,7 @@ impl Host<'_> {
         let visit = self.label(study, runs)?;
         loop {
             let step = match visit.next()? {
-                // Agreement stands in the first run, which does not exist yet.
+                // Consent is recorded in the first run, which does not exist yet.
                 NextStep::Consent(_) if self.consent.is_some() => visit.after_consent()?,
                 step => step,
             };
@@ -93,8 +93,8 @@ impl Host<'_> {
                     let session = self.begin(&visit, false, unfinished.as_deref())?;
                     let first = match (unfinished, session.company().observe().week) {
                         (None, _) => "The session begins.".to_owned(),
-                        (Some(_), 0) => "The session goes on before its first week.".to_owned(),
-                        (Some(_), week) => format!("The session goes on after week {week}."),
+                        (Some(_), 0) => "The session continues before its first week.".to_owned(),
+                        (Some(_), week) => format!("The session continues after week {week}."),
                     };
                     self.say("session", &format!("{first}\n{WAYS_OUT}"))?;
                     self.play(&visit, session)?;
@@ -113,7 +113,7 @@ impl Host<'_> {
         }
     }
 
-    /// Asks for the label until it is one of the study's.
+    /// Asks for the label until it is valid.
     fn label(&mut self, study: Study, runs: &Path) -> Result<Visit, Stop> {
         let mut refused = 0;
         loop {
@@ -133,7 +133,7 @@ impl Host<'_> {
     }
 
     fn consent(&mut self, visit: &Visit, text: &str) -> Result<(), Stop> {
-        // A program gets the text as it was written.
+        // Programs receive the text without wrapping.
         let shown = if self.style.json { text.trim().to_owned() } else { as_plain(text, WIDEST) };
         self.say("consent", &shown)?;
         let shown = steady();
@@ -156,7 +156,7 @@ impl Host<'_> {
 
     fn practise(&mut self, visit: &Visit, unfinished: Option<PathBuf>, may_pass: bool) -> Result<(), Stop> {
         if may_pass {
-            let question = "Type practice to practise first, skip to begin the session";
+            let question = "Type practice to practice first, skip to start the session";
             match self.choose(visit, "practice", question, ["practice", "skip"])? {
                 None => return Ok(()),
                 Some("practice") => {}
@@ -166,16 +166,16 @@ impl Host<'_> {
                 }
             }
         }
-        let first = if unfinished.is_some() { "The practice goes on" } else { "The practice begins" };
+        let first = if unfinished.is_some() { "The practice continues" } else { "The practice starts" };
         let text = format!(
-            "{first}: another company, which does not count. It ends by itself after its last day.\n{WAYS_OUT}"
+            "{first}. It uses a separate company and does not count. It ends after its last day.\n{WAYS_OUT}"
         );
         self.say("practice", &text)?;
         let session = self.begin(visit, true, unfinished.as_deref())?;
         self.play(visit, session)
     }
 
-    /// Asks for one of two words until one of them comes; none if the participant withdrew.
+    /// Asks until one of two words is typed. Returns `None` if the participant withdrew.
     fn choose(
         &mut self,
         visit: &Visit,
@@ -191,7 +191,8 @@ impl Host<'_> {
             }
             match typed.as_str() {
                 typed if is_quit(typed) => {
-                    let text = format!("You have left. `{}` continues: give the same label.", self.again);
+                    let text =
+                        format!("You have left. To continue, run `{}` and give the same label.", self.again);
                     self.say("later", &text)?;
                     return Err(Stop::Left(0));
                 }
@@ -215,20 +216,22 @@ impl Host<'_> {
         })
     }
 
-    /// Plays a run until it is over and its questions are answered, or the person leaves.
+    /// Plays a run until it is over and its questions are answered, or the participant leaves.
     fn play(&mut self, visit: &Visit, session: Session) -> Result<(), Stop> {
         let library = Library::of(self.configuration);
         let (end, session) = dialogue(session, library, self.style, Some(visit.study()), &mut self.lines)?;
         let goes_on = session.ended().is_some() && visit.study().due(&session).is_empty();
-        // The run has to be free before it is erased.
+        // The run must be closed before it can be erased.
         drop(session);
         match end {
             End::Withdrawn => Ok(visit.withdraw()?),
             End::Quit | End::Over if goes_on => Ok(()),
             End::RecordLost => Err(Stop::Left(end.code())),
             end => {
-                let text =
-                    format!("Everything confirmed is kept. `{}` continues: give the same label.", self.again);
+                let text = format!(
+                    "Everything confirmed is saved. To continue, run `{}` and give the same label.",
+                    self.again
+                );
                 self.say("later", &text)?;
                 Err(Stop::Left(end.code()))
             }
@@ -265,7 +268,7 @@ impl Host<'_> {
     }
 }
 
-/// Whether a line asks to leave.
+/// Returns whether a line asks to leave.
 fn is_quit(line: &str) -> bool {
     matches!(line.trim(), "quit" | "exit")
 }

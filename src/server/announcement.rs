@@ -1,5 +1,5 @@
-//! What is told once a run takes requests, and the file in its folder by which others find the server again, or see that a
-//! program plays it.
+//! The announcement of a server: a file in the run folder by which other processes find the server or see that a program plays
+//! the run.
 
 use std::path::{Path, PathBuf};
 
@@ -9,23 +9,23 @@ use novamind_record::error::RunError;
 use novamind_record::files::write_whole;
 use novamind_record::folder::lock::SERVER_FILE;
 
-/// Where a run is served.
+/// The address of a served run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Announcement {
-    /// The run.
+    /// Run id.
     pub run: String,
-    /// Port on 127.0.0.1; none where a client plays over standard input and output, and nobody else can ask.
+    /// Port on 127.0.0.1. `None` if a client plays over standard input and output, and no other process can connect.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub port: Option<u16>,
-    /// Process of the server.
+    /// Process id of the server.
     pub pid: u32,
-    /// File with the token that requests must carry, if they must.
+    /// File with the token that requests must carry, if one is required.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub token: Option<PathBuf>,
 }
 
 impl Announcement {
-    /// Puts it into the folder of the run, whole or not at all. Only who holds the run may do so.
+    /// Writes the announcement to the run folder atomically. The caller must hold the lock of the run.
     ///
     /// # Errors
     /// The folder cannot be written.
@@ -34,13 +34,13 @@ impl Announcement {
         write_whole(&folder.join(SERVER_FILE), text.as_bytes())
     }
 
-    /// Takes away what stands in the folder of a run.
+    /// Removes the announcement from a run folder.
     pub fn take_down(folder: &Path) {
-        // Whoever finds it left behind asks the port first.
+        // Readers of a leftover file check the port first.
         let _ = std::fs::remove_file(folder.join(SERVER_FILE));
     }
 
-    /// What stands in the folder of a run; the server may be gone. None where nothing that can be read is there.
+    /// Reads the announcement of a run folder. The server may have gone. Returns `None` if there is no readable file.
     pub fn read(folder: &Path) -> Option<Announcement> {
         serde_json::from_slice(&std::fs::read(folder.join(SERVER_FILE)).ok()?).ok()
     }

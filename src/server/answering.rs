@@ -1,4 +1,4 @@
-//! Answering a request with the session: what every door says alike.
+//! Executes requests on the session, in the same way for all interfaces.
 
 use serde_json::{Map, Value, json};
 
@@ -7,10 +7,10 @@ use novamind_record::trajectory::record::{QuerySource, Via};
 use novamind_session::{Session, WeekRequest, rows_as_json};
 use novamind_tools::{Kept, Refusal, ToolId};
 
-/// Tools whose arguments older programs send as null where they mean to leave them out.
+/// Tools for which older programs send null for omitted arguments.
 const NULLS_ARE_LEFT_OUT: [ToolId; 3] = [ToolId::SetPrices, ToolId::SetModelTiers, ToolId::SetDailySpend];
 
-/// Answers a request. What is asked comes in through `via`.
+/// Executes a request. `via` is the channel that the record names.
 pub fn answer(session: &mut Session, request: Request, via: Via) -> Answer {
     match request {
         Request::Call { tool, args, request_id } => call(session, &tool, args, &request_id, via),
@@ -50,7 +50,7 @@ fn call(session: &mut Session, tool: &str, mut args: Value, request_id: &Value, 
     {
         fields.retain(|_, value| !value.is_null());
     }
-    // The release reads the arguments as the map by group, so a call without arguments clears it.
+    // The released simulator reads the arguments as the map by group, so a call without arguments clears it.
     if tool == ToolId::SetTargetedOpsSpend.name() && args.as_object().is_some_and(Map::is_empty) {
         args = json!({ "targeted_spend": {} });
     }
@@ -90,7 +90,7 @@ fn query(session: &mut Session, sql: &Value) -> Answer {
     }
 }
 
-/// How the released server answers each kind of failed statement.
+/// Returns the status with which the released server answers each kind of failed statement.
 fn status_of_query(code: &str) -> Status {
     match code {
         "sql_empty" => Status::Refused,

@@ -5,14 +5,14 @@ use serde_json::Value;
 use super::transcript::{ForeignCall, ForeignTranscript, own_tool};
 use super::zip::ZipArchive;
 
-/// How to turn a log that is not understood into one that is.
+/// How to convert an unsupported log.
 const CONVERT: &str =
     "`inspect log convert --to json --output-dir FOLDER LOG` writes it as JSON, which can be imported";
 
 /// Reads the calls of an `.eval` archive.
 ///
 /// # Errors
-/// It is damaged, or does not have exactly one sample that calls tools of this program.
+/// It is damaged, or does not have exactly one sample with calls of tools of this program.
 pub(super) fn of_archive(bytes: &[u8], limit: u64) -> Result<ForeignTranscript, String> {
     let archive =
         ZipArchive::open(bytes).ok_or("the archive has no readable directory; it may be cut short")?;
@@ -21,7 +21,7 @@ pub(super) fn of_archive(bytes: &[u8], limit: u64) -> Result<ForeignTranscript, 
         serde_json::from_slice(&read)
             .map_err(|error| format!("{name} in the archive is not valid JSON ({error})"))
     };
-    // A log that Inspect has not finished has no header yet.
+    // An unfinished log has no header yet.
     let header =
         if archive.names().any(|name| name == "header.json") { "header.json" } else { "_journal/start.json" };
     let header = json(header)?;
@@ -36,7 +36,7 @@ pub(super) fn of_archive(bytes: &[u8], limit: u64) -> Result<ForeignTranscript, 
 /// Reads the calls of a log in JSON.
 ///
 /// # Errors
-/// It does not have exactly one sample that calls tools of this program.
+/// It does not have exactly one sample with calls of tools of this program.
 pub(super) fn of_json(log: &Value) -> Result<ForeignTranscript, String> {
     of_log(log, log["samples"].as_array().map_or(&[], Vec::as_slice))
 }
@@ -67,7 +67,7 @@ fn of_log(header: &Value, samples: &[Value]) -> Result<ForeignTranscript, String
     })
 }
 
-/// The calls in the messages of a sample, in order.
+/// Returns the calls in the messages of a sample, in order.
 fn calls_of(sample: &Value) -> Vec<ForeignCall> {
     let messages = sample["messages"].as_array().map_or(&[][..], Vec::as_slice);
     let mut found = Vec::new();
@@ -82,7 +82,7 @@ fn calls_of(sample: &Value) -> Vec<ForeignCall> {
     found
 }
 
-/// Whether the answer to a call says that the call was accepted. Returns `None` if there is no such statement.
+/// Returns whether the answer to a call says that the call was accepted, or `None` if it does not say.
 fn accepted(after: &[Value], id: &Value) -> Option<bool> {
     let answer = after.iter().find(|message| message["role"] == "tool" && message["tool_call_id"] == *id)?;
     if !answer["error"].is_null() {

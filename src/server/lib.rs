@@ -1,8 +1,8 @@
-//! Programs play through it: the routes of the released simulator over HTTP, and the Model Context Protocol
-//! (docs/interfaces/http.md, docs/interfaces/mcp.md).
+//! Interfaces for programs: the HTTP routes of the released simulator, and the Model Context Protocol (docs/interfaces/http.md,
+//! docs/interfaces/mcp.md).
 //!
-//! One thread owns the session and answers one request after the other; what waits for the network runs beside it and never
-//! enters `session`. Whoever comes in through a door meets the session that people play: the same calls, refusals and lines.
+//! One thread owns the session and executes requests one after the other. Network code runs next to it and never accesses
+//! `session`. Programs use the same session as people, with the same calls, rejections and record lines.
 
 mod announcement;
 mod answering;

@@ -1,17 +1,17 @@
-//! Bodies with `NaN` or `Infinity`, which are not JSON, but which Python's `json.dumps` writes. The request is refused as a
-//! tool refuses a wrong argument, so that every client shows which one it is.
+//! Bodies with `NaN` or `Infinity`, which are not JSON but which Python's `json.dumps` writes. They are rejected like a wrong
+//! argument, so that every client shows the name of the argument.
 
 use serde_json::Value;
 
 use novamind_tools::Refusal;
 
-/// The literals, the longest first.
+/// The literals, longest first.
 const LITERALS: [&str; 3] = ["-Infinity", "Infinity", "NaN"];
-/// Stands before a literal that was read as a text.
+/// Prefix of a literal that was converted to a text.
 const MARK: &str = "\u{1}not a number: ";
 
-/// Reads such a body: the literals become texts, and the refusal names the first. Returns `None` if the body holds no literal,
-/// or is not JSON for another reason.
+/// Reads such a body. The literals become texts, and the rejection names the first one. Returns `None` if the body contains no
+/// literal or is invalid for another reason.
 pub fn read(bytes: &[u8]) -> Option<(Value, Refusal)> {
     let mut value = serde_json::from_str(&marked(std::str::from_utf8(bytes).ok()?)).ok()?;
     let (path, literal) = unmark(&mut value)?;
@@ -20,7 +20,7 @@ pub fn read(bytes: &[u8]) -> Option<(Value, Refusal)> {
     Some((value, Refusal::at(argument, "wrong_type", message)))
 }
 
-/// The body with each literal outside of texts as a marked text.
+/// Converts each literal outside of texts to a marked text.
 fn marked(body: &str) -> String {
     let (mut text, mut rest, mut in_text) = (String::new(), body, false);
     while let Some(letter) = rest.chars().next() {
@@ -41,7 +41,7 @@ fn marked(body: &str) -> String {
     text
 }
 
-/// Turns marked texts into the literals, and returns the path of the first and the literal.
+/// Converts marked texts back to literals. Returns the path of the first one and the literal.
 fn unmark(value: &mut Value) -> Option<(String, String)> {
     let join = |name: String, (path, literal): (String, String)| match path.is_empty() {
         true => (name, literal),

@@ -1,11 +1,11 @@
-//! The description of the HTTP door as OpenAPI, made of the catalogue.
+//! The OpenAPI description of the HTTP interface, generated from the catalog.
 
 use serde_json::{Map, Value, json};
 
 use super::schema;
 use novamind_tools::{Numbers, ToolId};
 
-/// The whole description.
+/// Returns the description.
 pub fn document(numbers: &Numbers) -> Value {
     json!({
         "openapi": "3.1.0",
@@ -33,23 +33,23 @@ fn paths(numbers: &Numbers) -> Value {
     let script = retries(ToolId::RegisterScript, script);
     let sql = json!({ "type": "object", "required": ["sql"], "properties": { "sql": { "type": "string" } } });
     json!({
-        "/health": { "get": read("Whether the server takes requests, and which run it plays") },
-        "/shutdown": { "post": { "summary": "Finish what is in hand and leave the run",
+        "/health": { "get": read("Whether the server accepts requests, and the id of its run") },
+        "/shutdown": { "post": { "summary": "Finish pending requests and close the run",
             "responses": { "200": { "description": "success, run" } } } },
         "/vars": { "get": read("The current day") },
         "/dashboard": { "get": read("The dashboard of the last week, and the day") },
         "/game-status": { "get": read("Day, cash, active subscriptions, last day, and how the run ended") },
-        "/tools": { "get": read("Every tool: arguments, effect, cost, refusals, result") },
+        "/tools": { "get": read("Every tool: arguments, effect, cost, rejections, result") },
         "/tables": { "get": read("Every table that can be queried, and its columns") },
         "/call": { "post": write("Call a tool", json!({ "oneOf": calls() }),
             "success and data, or success false with error, code and field") },
-        "/next-week": { "post": write("File rationale and forecasts, and let a week pass", next_week,
+        "/next-week": { "post": write("Submit rationale and forecasts, and simulate a week", next_week,
             "day, dashboard, cash, figures, ended") },
-        "/query": { "post": write("Ask the database one statement", sql, "columns, rows, row_count") },
+        "/query": { "post": write("Run one SQL statement", sql, "columns, rows, row_count") },
         "/daily-scripts": {
-            "get": read("Names and sizes of the scripts that are kept"),
-            "post": write("Keep a script; it is never run", script.clone(), "name, registered"),
-            "delete": write("Forget a script", script, "removed"),
+            "get": read("Names and sizes of the stored scripts"),
+            "post": write("Store a script; it is never executed", script.clone(), "name, registered"),
+            "delete": write("Delete a script", script, "removed"),
         },
     })
 }
@@ -64,7 +64,7 @@ fn write(summary: &str, body: Value, answer: &str) -> Value {
         "requestBody": { "required": true, "content": { "application/json": { "schema": body } } },
         "responses": {
             "200": { "description": answer },
-            "400": { "description": "refused, or no JSON object: success false, error, code, field" },
+            "400": { "description": "rejected, or not a JSON object: success false, error, code, field" },
             "413": { "description": "the body is too large" },
             "503": { "description": "too many connections: send the request again after the seconds in Retry-After" },
         },

@@ -1,4 +1,4 @@
-//! The thread that owns the session, and the handle by which doors ask it.
+//! The thread that owns the session, and the handle with which interfaces send requests to it.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -18,38 +18,38 @@ use novamind_record::trajectory::record::{LeavingCause, Via};
 use novamind_session::{Access, Interface, ModelSettings, RunDatabase, Session};
 use novamind_tools::Kept;
 
-/// Hears of defects of ours.
+/// Receives reports of internal errors.
 pub type OnDefect = fn(&str);
 
-/// How programs come to a session.
+/// How an interface uses a session.
 #[derive(Clone, Copy)]
 pub struct Door {
-    /// What the lines of their calls say.
+    /// Channel of calls in the record.
     pub via: Via,
-    /// What the lines of their sessions say.
+    /// Interface of sessions in the record.
     pub interface: &'static str,
-    /// Hears of defects of ours.
+    /// Called with reports of internal errors.
     pub on_defect: OnDefect,
 }
 
-/// A request and where its answer goes.
+/// A request and the channel for its answer.
 struct Asked {
     number: u64,
     request: Request,
     reply: oneshot::Sender<Answer>,
 }
 
-/// The thread that owns a session. It ends when nobody can ask any more.
+/// The thread that owns a session. It ends when all handles are dropped.
 pub struct Owner {
     thread: JoinHandle<Result<(), RunError>>,
     running: Running,
-    /// Number and folder of the run.
+    /// Id and folder of the run.
     run: String,
     folder: Option<PathBuf>,
 }
 
 impl Owner {
-    /// Gives a session to a thread of its own; the handle asks it.
+    /// Moves a session to a new thread and returns a handle for requests.
     pub fn start(session: Session, door: Door) -> (Owner, Handle) {
         let (sender, receiver) = channel();
         let advancing = Advancing::default();
@@ -64,34 +64,34 @@ impl Owner {
         (Owner { thread, running, run, folder }, handle)
     }
 
-    /// Stops the script, the calculation or the statement that runs: a server that is to end does not wait for it.
+    /// Stops the running script, calculation or statement, for which a stopping server does not wait.
     pub fn stop_code(&self) {
         self.running.stop();
     }
 
-    /// Waits until every request is answered and the run is left. All handles must be gone.
+    /// Waits until every request is answered and the run is closed. All handles must have been dropped.
     ///
     /// # Errors
-    /// What the disk did not take; everything that was confirmed is on it. [`RunError::Defect`] if the thread panicked.
+    /// The end of the record cannot be written; everything confirmed is saved. [`RunError::Defect`] if the thread panicked.
     pub fn finish(self) -> Result<(), RunError> {
         let Owner { thread, run, folder, .. } = self;
         thread.join().unwrap_or(Err(RunError::Defect { run, folder }))
     }
 }
 
-/// Asks the owner.
+/// Sends requests to the owner.
 #[derive(Clone)]
 pub struct Handle {
     sender: Sender<Asked>,
     advancing: Advancing,
-    /// Requests so far.
+    /// Number of requests so far.
     asked: Arc<AtomicU64>,
     running: Running,
 }
 
 impl Handle {
-    /// Asks, and waits for the answer. A week is simulated to its end even if nobody waits any more; a script or a statement
-    /// is stopped then.
+    /// Sends a request and waits for the answer. If the caller stops waiting, a week is still simulated to its end, but a script or
+    /// statement is stopped.
     pub async fn ask(&self, request: Request) -> Answer {
         if let Request::NextWeek { request_id, .. } = &request
             && !self.advancing.begin(request_id)
@@ -99,7 +99,7 @@ impl Handle {
             return Answer::wrong(
                 Status::Busy,
                 "week_running",
-                "a week is being simulated; ask for the next one when it has been answered",
+                "a week is being simulated; request the next one after its response",
             );
         }
         let (reply, answer) = oneshot::channel();
@@ -115,16 +115,16 @@ impl Handle {
 }
 
 fn gone() -> Answer {
-    Answer::wrong(Status::Failed, "closing", "the server is closing the run; what was confirmed is kept")
+    Answer::wrong(Status::Failed, "closing", "the server is closing the run; everything confirmed is saved")
 }
 
-/// The weeks that were asked for and not yet answered: one, and retries of it.
+/// Pending requests for a week: one, and retries of it.
 #[derive(Clone, Default)]
 struct Advancing(Arc<Mutex<(usize, Value)>>);
 
 impl Advancing {
-    /// Takes a request for a week; whether it may wait for its answer. While a week is simulated, only a retry with the same
-    /// id may: it returns the first answer.
+    /// Adds a request for a week. Returns whether it may wait. During a week only a retry with the same id may, which returns the
+    /// first answer.
     fn begin(&self, request_id: &Value) -> bool {
         let mut weeks = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let (open, id) = &mut *weeks;
@@ -136,18 +136,18 @@ impl Advancing {
         true
     }
 
-    /// A request for a week was answered.
+    /// Removes a request for a week after its answer.
     fn end(&self) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).0 -= 1;
     }
 }
 
-/// The session and what is needed to open it again.
+/// The session, and the data to open it again.
 struct Owned {
-    /// None between a defect of ours and opening the run again.
+    /// `None` between an internal error and reopening the run.
     session: Option<Session>,
     folder: Option<PathBuf>,
-    /// The language model that speaks in it.
+    /// Settings of the model voice.
     model: Option<ModelSettings>,
     door: Door,
     running: Running,
@@ -162,7 +162,7 @@ impl Owned {
         while let Ok(Asked { number, request, reply }) = asked.recv() {
             let is_week = matches!(request, Request::NextWeek { .. });
             if reply.is_closed() && request.runs_code() {
-                // Whoever asked has gone before it began.
+                // The client disconnected before the request started.
                 continue;
             }
             if request.runs_code() || (is_week && self.has_calculations()) {
@@ -177,7 +177,7 @@ impl Owned {
             if is_week {
                 advancing.end();
             }
-            // Whoever asked may have gone.
+            // The client may have disconnected.
             let _ = reply.send(answer);
         }
         match self.session {
@@ -189,7 +189,7 @@ impl Owned {
         }
     }
 
-    /// Whether code runs before a week.
+    /// Returns whether code runs before a week.
     fn has_calculations(&self) -> bool {
         let kept = |session: &Session| !session.notebook().statements(Kept::Calculation).entries().is_empty();
         self.session.as_ref().is_some_and(kept)
@@ -202,18 +202,18 @@ impl Owned {
         let Some(session) = &mut self.session else { return gone() };
         let Door { via, on_defect, .. } = self.door;
         catch_unwind(AssertUnwindSafe(|| answer(session, request, via))).unwrap_or_else(|_| {
-            // What the session holds may be half done; the trajectory is not.
+            // The session in memory may be inconsistent; the trajectory is not.
             self.session = None;
             internal_error(on_defect)
         })
     }
 
-    /// Opens the run again after a defect of ours.
+    /// Reopens the run after an internal error.
     fn open_again(&mut self) -> Result<(), String> {
         if self.session.is_some() {
             return Ok(());
         }
-        let folder = self.folder.as_ref().ok_or("the run was not kept and cannot be opened again")?;
+        let folder = self.folder.as_ref().ok_or("the run was not saved and cannot be reopened")?;
         let mut session = Session::open(folder, Access::Write, true).map_err(|error| error.to_string())?;
         session.join_model(self.model.as_ref());
         self.session = Some(session);
@@ -221,18 +221,16 @@ impl Owned {
     }
 }
 
-/// A defect of ours, with a number by which its report is found.
+/// Returns the answer for an internal error, with the number of its report.
 fn internal_error(on_defect: OnDefect) -> Answer {
     static DEFECTS: AtomicU64 = AtomicU64::new(1);
     let id =
         format!("{:012x}", (u64::from(std::process::id()) << 16) + DEFECTS.fetch_add(1, Ordering::Relaxed));
-    on_defect(&format!(
-        "defect {id}: a request met a defect of the program; the run is opened again from its record"
-    ));
+    on_defect(&format!("internal error {id}: a request failed; the run is reopened from its record"));
     let mut answer = Answer::wrong(
         Status::Failed,
         "internal_error",
-        "the program has a defect; what was confirmed before is kept, and the run goes on",
+        "an internal error occurred; everything confirmed before is saved, and the run continues",
     );
     answer.body["defect_id"] = id.into();
     answer

@@ -1,7 +1,7 @@
-//! What an agent is handed: one page with goal, rules and calls, and the documentation of tools and tables.
+//! Instructions for an agent: a page with goal, rules and calls, and the documentation of tools and tables.
 //!
-//! Everything follows from the catalogue and the parameters in force. It tells what agents in the benchmark are told, and no more:
-//! nothing hidden, and nothing about how to play well.
+//! Everything is generated from the catalog and the current parameters. The page contains what agents in the benchmark are told,
+//! without hidden state and without advice on how to play well.
 
 use std::path::Path;
 
@@ -19,24 +19,24 @@ const PAGE: &str = include_str!("../../assets/agent/page.md");
 const SHELL: &str = include_str!("../../assets/agent/shell.md");
 const ERRORS: &str = include_str!("../../assets/agent/errors.md");
 
-/// The heading of the page before which goal, calendar and rules stand.
+/// The heading that follows goal, calendar and rules.
 const HOW_TO_CALL: &str = "## How to call";
 
-/// Name of the page.
+/// File name of the page.
 const PAGE_FILE: &str = "AGENT.md";
 
-/// The run that a page is about.
+/// The run that a page describes.
 #[derive(Debug, Clone)]
 pub struct PageOf<'a> {
     /// Last day.
     pub days: u32,
-    /// Cash on day 0, dollars.
+    /// Cash on day 0, in dollars.
     pub cash: f64,
-    /// The parameters in force.
+    /// Current parameters.
     pub numbers: &'a Numbers,
 }
 
-/// The page, as Markdown.
+/// Returns the page as Markdown.
 pub fn page(of: &PageOf<'_>) -> String {
     let filled = of.numbers.fill(PAGE);
     let parts = [
@@ -52,13 +52,13 @@ pub fn page(of: &PageOf<'_>) -> String {
     parts.iter().fold(filled, |text, (name, value)| text.replace(name, value))
 }
 
-/// Goal, calendar and rules of the page alone, for those who are shown the tools elsewhere.
+/// Returns the goal, the calendar and the rules of the page, for clients that receive the tools separately.
 pub fn goal_and_rules(of: &PageOf<'_>) -> String {
     let whole = page(of);
     whole.split_once(HOW_TO_CALL).map_or(whole.as_str(), |(before, _)| before).trim_end().to_owned()
 }
 
-/// Writes page and documentation into a folder: `AGENT.md`, `tools.md`, `tools.json`, `tables.md`, `tables.json`.
+/// Writes the page and the documentation to a folder: `AGENT.md`, `tools.md`, `tools.json`, `tables.md`, `tables.json`.
 ///
 /// # Errors
 /// The folder cannot be written.

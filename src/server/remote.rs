@@ -1,4 +1,4 @@
-//! A run that a server on this machine plays, asked from another process.
+//! A client for a run that a server on this machine plays.
 
 use std::net::Ipv4Addr;
 use std::path::Path;
@@ -13,37 +13,37 @@ use tokio::net::TcpStream;
 use super::announcement::Announcement;
 use novamind_record::folder::lock::is_being_played;
 
-/// A server that is well answers this at once, also while a week is simulated.
+/// Time limit for the health check, which a working server answers at once, even during a week.
 const HEALTH_DEADLINE: Duration = Duration::from_secs(10);
-/// A week of a large company takes seconds; a script may take minutes.
+/// Time limit for other requests. A week of a large company takes seconds; a script may take minutes.
 const DEADLINE: Duration = Duration::from_secs(1800);
-/// Bytes of an answer.
+/// Maximum size of a response in bytes.
 const MOST_BYTES: usize = 256 * 1024 * 1024;
 
-/// A server that was found to play a run.
+/// A server that plays a run.
 #[derive(Debug, Clone)]
 pub struct Remote {
-    /// What it says of itself.
+    /// Its announcement.
     pub announcement: Announcement,
     /// Port on 127.0.0.1.
     pub port: u16,
-    /// What requests carry, if they must carry something.
+    /// Token for requests, if one is required.
     pub token: Option<String>,
 }
 
-/// What a server said.
+/// A response of a server.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reply {
-    /// Status of HTTP.
+    /// HTTP status.
     pub status: u16,
-    /// The object.
+    /// The body.
     pub body: Value,
 }
 
 impl Remote {
-    /// The server that plays the run in a folder; none if there is none that answers for this run over HTTP.
+    /// Finds the server that plays the run of a folder. Returns `None` if no server responds for this run over HTTP.
     ///
-    /// What a server that was killed left behind is recognised before anything is sent: nobody holds the run then.
+    /// A leftover announcement of a killed server is detected without a request, because nothing holds the lock of the run.
     pub fn find(folder: &Path, run: &str) -> Option<Remote> {
         let announcement = Announcement::read(folder).filter(|own| own.run == run)?;
         if !is_being_played(folder) {
@@ -55,28 +55,28 @@ impl Remote {
         };
         let remote = Remote { port: announcement.port?, announcement, token };
         let health = remote.send(Method::GET, "/health", None, HEALTH_DEADLINE).ok()?;
-        // A server that has no room for another connection names no run, and says so again to the request itself.
+        // A server with too many connections does not name its run, and rejects the actual request, too.
         let is_full = health.status == 503 && health.body["code"] == "too_many_connections";
         (is_full || health.status == 200 && health.body["run"] == run).then_some(remote)
     }
 
-    /// Reads something.
+    /// Sends a GET request.
     ///
     /// # Errors
-    /// The server does not answer, or not in JSON: why, in words.
+    /// The server does not respond, or not with JSON. The error is a description.
     pub fn get(&self, path: &str) -> Result<Reply, String> {
         self.send(Method::GET, path, None, DEADLINE)
     }
 
-    /// Sends an object.
+    /// Sends a POST request with an object.
     ///
     /// # Errors
-    /// As [`Remote::get`]. What was sent may have been done.
+    /// As [`Remote::get`]. The request may have been executed.
     pub fn post(&self, path: &str, body: &Value) -> Result<Reply, String> {
         self.send(Method::POST, path, Some(body), DEADLINE)
     }
 
-    /// Asks the server to finish what it has in hand and to leave the run.
+    /// Asks the server to finish pending requests and close the run.
     ///
     /// # Errors
     /// As [`Remote::get`].
@@ -106,7 +106,7 @@ impl Remote {
         let runtime = runtime.map_err(|error| error.to_string())?;
         runtime.block_on(async {
             let asked = tokio::time::timeout(deadline, ask(self.port, request));
-            asked.await.map_err(|_| format!("it did not answer within {} s", deadline.as_secs()))?
+            asked.await.map_err(|_| format!("it did not respond within {} s", deadline.as_secs()))?
         })
     }
 }
@@ -118,13 +118,14 @@ async fn ask(port: u16, request: Request<Body>) -> Result<Reply, String> {
         .await
         .map_err(|error| in_words(&error))?;
     tokio::spawn(async move {
-        // What goes wrong on the way is told to whoever waits for the answer.
+        // Errors on the connection are reported by the request that waits for the response.
         let _ = connection.await;
     });
     let response = sender.send_request(request).await.map_err(|error| in_words(&error))?;
     let status = response.status().as_u16();
     let bytes =
         to_bytes(Body::new(response.into_body()), MOST_BYTES).await.map_err(|error| in_words(&error))?;
-    let body = serde_json::from_slice(&bytes).map_err(|error| format!("it answered no JSON: {error}"))?;
+    let body =
+        serde_json::from_slice(&bytes).map_err(|error| format!("its response is not valid JSON: {error}"))?;
     Ok(Reply { status, body })
 }

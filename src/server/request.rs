@@ -1,4 +1,4 @@
-//! What a program may ask of a run, and what it is answered.
+//! Requests of programs and their answers.
 
 use serde_json::{Map, Value, json};
 
@@ -6,39 +6,39 @@ use super::schema::REQUEST_ID;
 use novamind_record::trajectory::record::RefusalRecord;
 use novamind_tools::{Refusal, ToolId, find};
 
-/// What a program asks of a run.
+/// A request of a program.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Request {
     /// Call a tool.
     Call {
-        /// Its name.
+        /// Name of the tool.
         tool: String,
-        /// Its arguments, as they were sent.
+        /// Arguments as they were sent.
         args: Value,
-        /// The id of the request; null without one.
+        /// Request id, or null.
         request_id: Value,
     },
-    /// Record a call that is refused before a tool receives it.
+    /// Record a call that was rejected before it reached a tool.
     Refused {
         /// Name of the tool.
         tool: String,
-        /// Its arguments, as they were sent.
+        /// Arguments as they were sent.
         args: Value,
-        /// Why.
+        /// The reason.
         refusal: Refusal,
     },
-    /// File rationale and forecasts, and let a week pass.
+    /// Submit rationale and forecasts, and simulate a week.
     NextWeek {
-        /// Why.
+        /// Rationale.
         rationale: Value,
-        /// Forecasts of four horizons.
+        /// Forecasts for four horizons.
         predictions: Value,
-        /// The day on which the run must be; null if any will do.
+        /// The required current day, or null for any day.
         expected_day: Value,
-        /// The id of the request; null without one.
+        /// Request id, or null.
         request_id: Value,
     },
-    /// Ask the database.
+    /// Run a statement.
     Query {
         /// One statement.
         sql: Value,
@@ -49,22 +49,22 @@ pub enum Request {
     Dashboard,
     /// Day, cash, subscribers, and whether the run is over.
     GameStatus,
-    /// Names and sizes of the scripts that are kept.
+    /// Names and sizes of the stored scripts.
     DailyScripts,
-    /// Keep a script.
+    /// Store a script.
     KeepDailyScript {
-        /// Its name.
+        /// Name.
         name: Value,
-        /// Its text.
+        /// Text.
         content: Value,
-        /// The id of the request; null without one.
+        /// Request id, or null.
         request_id: Value,
     },
-    /// Forget a script.
+    /// Delete a script.
     ForgetDailyScript {
-        /// Its name.
+        /// Name.
         name: Value,
-        /// The id of the request; null without one.
+        /// Request id, or null.
         request_id: Value,
     },
     /// The notes of the run.
@@ -72,9 +72,9 @@ pub enum Request {
 }
 
 impl Request {
-    /// What a call of a tool asks: a statement and a week have requests of their own, whichever door they come through.
+    /// Returns the request of a tool call. Statements and weeks become their own requests in all interfaces.
     ///
-    /// The id of the request may be among the arguments.
+    /// The request id may be among the arguments.
     pub fn of_tool(name: &str, args: Value, request_id: Value) -> Request {
         let mut fields = match args {
             Value::Object(fields) => fields,
@@ -87,7 +87,7 @@ impl Request {
         let is_statement =
             |(field, value): (&String, &Value)| field == "sql" && (value.is_string() || value.is_null());
         if name == ToolId::Query.name() && !fields.iter().all(is_statement) {
-            // The tool itself refuses wrong arguments, as every tool does.
+            // The tool rejects invalid arguments itself.
             return Request::Call { tool: name.to_owned(), args: fields.into(), request_id };
         }
         if name == ToolId::NextWeek.name() {
@@ -108,7 +108,7 @@ impl Request {
         Request::Call { tool: name.to_owned(), args: fields.into(), request_id }
     }
 
-    /// Whether it runs a script or a statement, which changes nothing and may be stopped.
+    /// Returns whether the request only runs a script or a statement, which changes nothing and may be stopped.
     pub fn runs_code(&self) -> bool {
         match self {
             Request::Query { .. } => true,
@@ -118,17 +118,17 @@ impl Request {
     }
 }
 
-/// Refuses a week with an argument that it does not have: a mistyped `expected_day` would protect nothing.
+/// Rejects a week with an unknown argument, because a misspelled `expected_day` would protect nothing.
 fn unknown_argument_of_week(fields: &Map<String, Value>) -> Option<Refusal> {
     const KNOWN: [&str; 3] = ["rationale", "predictions", "expected_day"];
     let unknown = fields.keys().find(|name| !KNOWN.contains(&name.as_str()))?;
     let message = format!(
-        "next_week has no argument {unknown}; it has rationale, predictions, expected_day and request_id. No day has passed"
+        "next_week has no argument {unknown}; it takes rationale, predictions, expected_day and request_id. No day has passed"
     );
     Some(Refusal::at(unknown.clone(), "unknown_argument", message))
 }
 
-/// The text of an error: if several deals are all refused, one line for each, as in the release.
+/// Returns the text of an error. If several deals are all rejected, it has one line each, as in the released simulator.
 fn error_text(message: &str, results: &Value) -> String {
     let line = |result: &Value| {
         let who = result["customer_id"].as_i64().map(|customer| format!("customer {customer}"));
@@ -141,59 +141,59 @@ fn error_text(message: &str, results: &Value) -> String {
     }
 }
 
-/// Whether a request was answered, and how not.
+/// The kind of an answer, from which its HTTP status follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// It was; also a tool that refused.
+    /// Success, or a rejection by a tool.
     Done,
-    /// What was asked is wrong.
+    /// The request is invalid.
     Refused,
-    /// It does not carry the token.
+    /// The token is missing or wrong.
     Unauthorized,
-    /// It may not be asked.
+    /// The request is not allowed.
     Forbidden,
-    /// There is nothing of that name.
+    /// The named object does not exist.
     Missing,
     /// Another week is being simulated.
     Busy,
-    /// It failed.
+    /// An internal error.
     Failed,
-    /// It took too long to answer.
+    /// The answer took too long.
     TimedOut,
-    /// It took too long to arrive.
+    /// The request took too long to arrive.
     TooSlow,
-    /// It is larger than what is read.
+    /// The request is too large.
     TooLarge,
 }
 
-/// What a program is answered.
+/// The answer to a request.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
-    /// Whether it is what was asked for.
+    /// Kind of the answer.
     pub status: Status,
-    /// The object.
+    /// Body.
     pub body: Value,
 }
 
 impl Answer {
-    /// Fields beside `success: true`.
+    /// Returns the fields with `success: true`.
     pub fn done(fields: Map<String, Value>) -> Answer {
         let mut body = Map::from_iter([("success".to_owned(), true.into())]);
         body.extend(fields);
         Answer { status: Status::Done, body: body.into() }
     }
 
-    /// What a tool said.
+    /// Returns the data of a tool.
     pub fn data(data: Value) -> Answer {
         Answer::done(Map::from_iter([("data".to_owned(), data)]))
     }
 
-    /// An object as it stands.
+    /// Returns an object unchanged.
     pub fn plain(body: Value) -> Answer {
         Answer { status: Status::Done, body }
     }
 
-    /// A refusal; programs written for the released simulator read `error` and `data`.
+    /// Returns a rejection. Programs for the released simulator read `error` and `data`.
     pub fn refused(status: Status, refusal: impl Into<RefusalRecord>) -> Answer {
         let refusal = refusal.into();
         let error = error_text(&refusal.message, &json!(refusal.results));
@@ -206,7 +206,7 @@ impl Answer {
         Answer { status, body }
     }
 
-    /// The same as the answer of a call: what a tool refuses, a statement and a week among them, is an answer like any other.
+    /// Returns the same answer as for a tool call, where a rejection is a normal answer, including rejected statements and weeks.
     pub fn told_as_call(mut self) -> Answer {
         let is_of_tool = match self.status {
             Status::Refused | Status::Forbidden | Status::TimedOut => true,
@@ -219,12 +219,12 @@ impl Answer {
         self
     }
 
-    /// Something wrong with a request that no tool looked at.
+    /// Returns an error of a request that did not reach a tool.
     pub fn wrong(status: Status, code: &'static str, message: impl Into<String>) -> Answer {
         Answer::refused(status, Refusal::new(code, message))
     }
 
-    /// Whether it is what was asked for.
+    /// Returns whether the request succeeded.
     pub fn succeeded(&self) -> bool {
         self.status == Status::Done && self.body["success"] != Value::Bool(false)
     }

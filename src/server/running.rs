@@ -1,38 +1,38 @@
-//! The request that is answered at this moment, and how the script or the statement in it is stopped.
+//! The request being executed, and how to stop its script or statement.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use novamind_database::Interrupt;
 
-/// A request that is answered.
+/// A request being executed.
 struct Held {
     number: u64,
-    /// It is nothing but code: where its client has gone, nobody needs it.
+    /// Whether it only runs code, whose result nobody needs after the client has gone.
     is_code: bool,
     interrupt: Interrupt,
 }
 
-/// What runs, and what stops it. A week is simulated to its end, but its calculations are stopped where the server is to end.
+/// The running request and its interrupt. A week is simulated to its end, but its calculations stop when the server stops.
 #[derive(Clone, Default)]
 pub(super) struct Running(Arc<Mutex<Option<Held>>>);
 
 impl Running {
-    /// From now on this request runs.
+    /// Sets the running request.
     pub fn begin(&self, number: u64, is_code: bool, interrupt: Option<Interrupt>) {
         self.hold(interrupt.map(|interrupt| Held { number, is_code, interrupt }));
     }
 
-    /// Nothing runs any more that could be stopped.
+    /// Clears the running request.
     pub fn end(&self) {
         self.hold(None);
     }
 
-    /// Stops the script or the statement that runs.
+    /// Stops the running script or statement.
     pub fn stop(&self) {
         self.stop_if(|_| true);
     }
 
-    /// A watch over a request: dropped before its answer has come, it stops the request.
+    /// Returns a guard that stops the request if it is dropped before the response.
     pub fn watch(&self, number: u64) -> Watch {
         Watch { running: self.clone(), number, is_answered: false }
     }
@@ -47,7 +47,7 @@ impl Running {
     }
 }
 
-/// Somebody who waits for an answer.
+/// A guard of a client that waits for a response.
 pub(super) struct Watch {
     running: Running,
     number: u64,
@@ -55,7 +55,7 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// The answer is there.
+    /// Disarms the guard after the response.
     pub fn ends(mut self) {
         self.is_answered = true;
     }

@@ -1,13 +1,13 @@
-//! The arguments of tools as JSON Schema, made of the catalogue.
+//! JSON Schema of the arguments of tools, generated from the catalog.
 
 use serde_json::{Map, Value, json};
 
 use novamind_tools::{Argument, ArgumentKind, CATALOGUE, FORECAST_KEYS, Numbers, Range, Spec, ToolId};
 
-/// Field of a request that holds its id.
+/// Field of a request with its id.
 pub const REQUEST_ID: &str = "request_id";
 
-/// Returns the fields with which a request that calls a tool is retried safely.
+/// Returns the fields of a tool call that make retries safe.
 pub fn of_retries(tool: ToolId) -> Map<String, Value> {
     let mut fields = Map::new();
     if tool == ToolId::NextWeek {
@@ -18,7 +18,8 @@ pub fn of_retries(tool: ToolId) -> Map<String, Value> {
         );
     }
     if tool.takes_request_id() {
-        let description = "A new text for each request. Send it again to retry: the request runs once";
+        let description =
+            "A unique text for each request. Send it again to retry; the request runs only once";
         fields.insert(
             REQUEST_ID.to_owned(),
             json!({ "type": "string", "minLength": 1, "maxLength": 128, "description": description }),
@@ -27,12 +28,12 @@ pub fn of_retries(tool: ToolId) -> Map<String, Value> {
     fields
 }
 
-/// Every tool, in the order of the catalogue.
+/// Returns every tool, in the order of the catalog.
 pub fn specs() -> impl Iterator<Item = &'static Spec> {
     CATALOGUE.iter().map(|tool| tool.spec())
 }
 
-/// What the arguments of a tool must look like.
+/// Returns the schema of the arguments of a tool.
 pub fn arguments(spec: &Spec, numbers: &Numbers) -> Map<String, Value> {
     let property = |argument: &Argument| {
         let schema = match (spec.id, argument.name) {
@@ -55,7 +56,7 @@ pub fn arguments(spec: &Spec, numbers: &Numbers) -> Map<String, Value> {
     schema
 }
 
-/// The tools as functions, with the schema of their arguments.
+/// Returns the tools as functions with the schema of their arguments.
 pub fn functions(numbers: &Numbers) -> Vec<Value> {
     let function = |spec: &'static Spec| {
         let parameters = arguments(spec, numbers);
@@ -87,7 +88,7 @@ fn value(kind: &ArgumentKind) -> Value {
         ArgumentKind::Number(range) => number("number", range),
         ArgumentKind::Integer(range) => number("integer", range),
         ArgumentKind::Text => json!({ "type": "string" }),
-        // Their shapes are told in words; the tool says what is wrong with a value.
+        // Their structure is described in text; the tool reports invalid values.
         ArgumentKind::Structure(_) => json!({}),
         ArgumentKind::Deals(_) => json!({ "type": "array" }),
         ArgumentKind::Map(_, range) => map(number("number", range)),

@@ -1,4 +1,4 @@
-//! A transcript that was made elsewhere, played call by call (docs/formats/exports.md#importing-a-transcript).
+//! Imports an external transcript and plays it call by call (docs/formats/exports.md#importing-a-transcript).
 
 use serde_json::{Map, Value};
 
@@ -10,58 +10,58 @@ use novamind_record::trajectory::record::Via;
 use novamind_session::{PYTHON_NOT_RUN, Session};
 use novamind_tools::{ToolId, find};
 
-/// Largest file that is read from an archive, bytes: 500 days of an agent take a few megabytes.
+/// Maximum size of a file in an archive, in bytes. 500 days of an agent take a few megabytes.
 const MAX_FILE_BYTES: u64 = 512 << 20;
 
-/// What somebody did with the tools of this program, in order.
+/// The calls of tools of this program in an external transcript, in order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForeignTranscript {
-    /// Who it says has played.
+    /// Name of the player.
     pub player: Option<String>,
-    /// What it says of its world, where it says it.
+    /// Seed, if the transcript states it.
     pub seed: Option<u64>,
     /// Name of the scenario.
     pub scenario: Option<String>,
     /// Last day.
     pub days: Option<u32>,
-    /// Cash on day 0, dollars.
+    /// Cash on day 0, in dollars.
     pub cash: Option<f64>,
-    /// Hash of the state it led to.
+    /// Hash of the final state.
     pub state_hash: Option<String>,
-    /// Its calls.
+    /// The calls.
     pub calls: Vec<ForeignCall>,
 }
 
 /// A call in a transcript.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForeignCall {
-    /// Where it stands: number of its step or line, counted from 1.
+    /// Number of its step or line, counted from 1.
     pub place: usize,
-    /// The tool as it is called here.
+    /// Name of the tool in this program.
     pub tool: String,
-    /// Its arguments.
+    /// Arguments.
     pub arguments: Map<String, Value>,
-    /// Whether it was accepted; none where the transcript does not say.
+    /// Whether it was accepted, if the transcript states it.
     pub accepted: Option<bool>,
 }
 
-/// What came of playing a transcript.
+/// The result of playing a transcript.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct PlayedTranscript {
-    /// Calls that were made, weeks and statements among them.
+    /// Number of executed calls, including weeks and statements.
     pub made: usize,
-    /// Calls that were answered otherwise than the transcript says, or that the run no longer took: place, tool, what it said.
+    /// Calls with a different answer than in the transcript, or after the end of the run: place, tool, answer.
     pub otherwise: Vec<(usize, String, String)>,
-    /// Programs in Python that were accepted where they were run, and are not run here.
+    /// Number of accepted Python programs, which are not executed.
     pub not_run: usize,
 }
 
 impl ForeignTranscript {
-    /// Reads a trajectory in the Agent Trajectory Interchange Format, a log of Inspect (JSON or `.eval`), or lines with a
-    /// `tool` and its `args` each.
+    /// Reads a trajectory in the Agent Trajectory Interchange Format, an Inspect log (JSON or `.eval`), or lines with a `tool` and
+    /// its `args` each.
     ///
     /// # Errors
-    /// It is none of them, or no call in it is one of a tool of this program.
+    /// It is none of them, or contains no call of a tool of this program.
     pub fn read(bytes: &[u8]) -> Result<ForeignTranscript, String> {
         let read = match serde_json::from_slice::<Value>(bytes) {
             Ok(Value::Object(whole)) if whole.contains_key("steps") => of_steps(&whole),
@@ -74,12 +74,12 @@ impl ForeignTranscript {
             }
         };
         match read.calls.is_empty() {
-            true => Err("it holds no call of a tool of this program".to_owned()),
+            true => Err("it contains no call of a tool of this program".to_owned()),
             false => Ok(read),
         }
     }
 
-    /// Makes the calls in a run, and starts no programs that they hold. `progress` is told of each.
+    /// Plays the calls in a run, without executing programs in them. `progress` is called with each call.
     pub fn play(&self, session: &mut Session, progress: &mut dyn FnMut(usize)) -> PlayedTranscript {
         let mut played = PlayedTranscript::default();
         session.keep_python_out();
@@ -104,7 +104,7 @@ impl ForeignTranscript {
     }
 }
 
-/// The tool behind a name as clients write it: some put the name of the server before it.
+/// Finds the tool of a name. Some clients prefix the name with that of the server.
 pub(super) fn own_tool(name: &str) -> Option<&'static str> {
     let bare = name.rsplit(['.', '/', ':']).next().unwrap_or(name);
     let bare = bare.rsplit_once("__").map_or(bare, |(_, bare)| bare);
@@ -139,14 +139,14 @@ fn of_steps(whole: &Map<String, Value>) -> ForeignTranscript {
     }
 }
 
-/// Whether the observation of a step says that a call was accepted, where it says so.
+/// Returns whether the observation of a step says that a call was accepted, or `None` if it does not say.
 fn accepted(step: &Value, id: &Value) -> Option<bool> {
     let results = step["observation"]["results"].as_array()?;
     let own = results.iter().find(|result| result["source_call_id"] == *id)?;
     says_accepted(own["content"].as_str()?)
 }
 
-/// Whether an answer says that its call was accepted. Returns `None` if there is no such statement.
+/// Returns whether an answer says that its call was accepted, or `None` if it does not say.
 pub(super) fn says_accepted(answer: &str) -> Option<bool> {
     let said: Value = serde_json::from_str(answer).ok()?;
     match (&said["success"], said.get("dashboard")) {
@@ -161,9 +161,9 @@ fn of_lines(text: &str) -> Result<ForeignTranscript, String> {
     for (at, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
         let place = at + 1;
         let read: Value = serde_json::from_str(line).map_err(|error| {
-            format!("line {place} is no JSON ({error}), and the whole is no trajectory with steps")
+            format!("line {place} is not valid JSON ({error}), and the file is not a trajectory with steps")
         })?;
-        let name = read["tool"].as_str().ok_or_else(|| format!("line {place} names no tool"))?;
+        let name = read["tool"].as_str().ok_or_else(|| format!("line {place} has no tool"))?;
         let tool = own_tool(name).ok_or_else(|| format!("line {place}: there is no tool {name}"))?.to_owned();
         let arguments = match read.get("args").or_else(|| read.get("arguments")) {
             None | Some(Value::Null) => Map::new(),
@@ -252,9 +252,9 @@ mod tests {
         for (text, words) in [
             ("", "no call"),
             ("{\"steps\": []}", "no call"),
-            ("hello", "line 1 is no JSON"),
+            ("hello", "line 1 is not valid JSON"),
             ("{\"tool\": \"bash\"}", "there is no tool bash"),
-            ("{\"args\": {}}", "names no tool"),
+            ("{\"args\": {}}", "has no tool"),
             ("{\"tool\": \"set_prices\", \"args\": [1]}", "no object"),
         ] {
             let said = ForeignTranscript::read(text.as_bytes()).expect_err(text);

@@ -1,4 +1,4 @@
-//! Reads files of a zip archive that are stored, deflated, or compressed with Zstandard, as in Inspect's `.eval` logs.
+//! Reads stored, deflated and Zstandard-compressed files of a zip archive, such as Inspect's `.eval` logs.
 
 use std::io::Read;
 
@@ -11,9 +11,9 @@ const END_64: &[u8] = b"PK\x06\x06";
 const LOCATOR_64: &[u8] = b"PK\x06\x07";
 const ENTRY: &[u8] = b"PK\x01\x02";
 const FILE: &[u8] = b"PK\x03\x04";
-/// Bytes of an end record without its comment.
+/// Size of an end record without its comment, in bytes.
 const END_BYTES: usize = 22;
-/// Bytes of a locator of a 64-bit end record.
+/// Size of the locator of a 64-bit end record, in bytes.
 const LOCATOR_BYTES: usize = 20;
 
 /// An archive in memory.
@@ -32,12 +32,12 @@ struct Entry {
 }
 
 impl<'a> ZipArchive<'a> {
-    /// Whether bytes begin as an archive does.
+    /// Returns whether the bytes begin like an archive.
     pub fn is_one(bytes: &[u8]) -> bool {
         bytes.starts_with(FILE) || bytes.starts_with(END)
     }
 
-    /// Reads the directory of an archive. Returns `None` if it has none, or if it is damaged.
+    /// Reads the directory of an archive. Returns `None` if it is missing or damaged.
     pub fn open(bytes: &'a [u8]) -> Option<ZipArchive<'a>> {
         let end = end_record(bytes)?;
         let (mut count, mut at) = (u64::from(u16_at(bytes, end + 10)?), u64::from(u32_at(bytes, end + 16)?));
@@ -59,15 +59,15 @@ impl<'a> ZipArchive<'a> {
         Some(ZipArchive { bytes, entries })
     }
 
-    /// Names of the files, in order.
+    /// Returns the names of the files in order.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.entries.iter().map(|entry| entry.name.as_str())
     }
 
-    /// Reads a file of at most `limit` bytes. If a name occurs several times, the last one counts.
+    /// Reads a file of at most `limit` bytes. If a name occurs several times, the last one is read.
     ///
     /// # Errors
-    /// The file is missing, damaged, too large, or compressed otherwise.
+    /// The file is missing, damaged, too large, or compressed by an unsupported method.
     pub fn read(&self, name: &str, limit: u64) -> Result<Vec<u8>, String> {
         let damaged = || format!("{name} in the archive is damaged");
         let entry = self.entries.iter().rfind(|entry| entry.name == name);
@@ -105,7 +105,7 @@ impl<'a> ZipArchive<'a> {
 }
 
 impl Entry {
-    /// Reads an entry of the directory. Also returns where the next one begins.
+    /// Reads an entry of the directory. Also returns the offset of the next one.
     fn read(bytes: &[u8], at: usize) -> Option<(Entry, usize)> {
         if !starts_with(bytes, at, ENTRY) {
             return None;
@@ -135,7 +135,7 @@ impl Entry {
     }
 }
 
-/// Frames of Zstandard, one after the other.
+/// Consecutive Zstandard frames.
 struct Frames<'a> {
     rest: &'a [u8],
     current: Option<StreamingDecoder<&'a [u8], ruzstd::decoding::FrameDecoder>>,
@@ -166,7 +166,7 @@ impl Read for Frames<'_> {
     }
 }
 
-/// Where the end record begins: it is followed by a comment, whose length it holds.
+/// Returns the offset of the end record, which is followed by a comment of the length that it states.
 fn end_record(bytes: &[u8]) -> Option<usize> {
     let last = bytes.len().checked_sub(END_BYTES)?;
     let first = last.saturating_sub(usize::from(u16::MAX));
@@ -177,7 +177,7 @@ fn end_record(bytes: &[u8]) -> Option<usize> {
     (first..=last).rev().find(is_end)
 }
 
-/// The data of the 64-bit extra field among extra fields.
+/// Returns the data of the 64-bit extra field.
 fn extra_64(mut extras: &[u8]) -> &[u8] {
     while let (Some(kind), Some(length)) = (u16_at(extras, 0), u16_at(extras, 2)) {
         let Some((data, rest)) = extras[4..].split_at_checked(length.into()) else { break };
@@ -226,7 +226,7 @@ mod tests {
         encoder.finish().expect("written")
     }
 
-    /// An archive of files with these names, methods and contents.
+    /// Creates an archive of files with these names, methods and contents.
     fn archive(files: &[(&str, u16, &[u8])]) -> Vec<u8> {
         let (mut bytes, mut directory) = (Vec::new(), Vec::new());
         for (name, method, content) in files {

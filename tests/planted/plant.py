@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
-"""Makes one error at a time in a copy of the repository and counts how many the test suite notices.
+"""Applies one mutation at a time in a copy of the repository and counts how many the test suite detects.
 
-    tests/planted/plant.py                        all errors, the whole suite
-    tests/planted/plant.py --only 3,17,40         some errors
-    tests/planted/plant.py --crate novamind-world the errors of one crate
+    tests/planted/plant.py                        all mutants, the whole suite
+    tests/planted/plant.py --only 3,17,40         some mutants
+    tests/planted/plant.py --crate novamind-world the mutants of one crate
     tests/planted/plant.py --stages own,library   some of the stages
-    tests/planted/plant.py --check                only test that each error still finds its place
+    tests/planted/plant.py --check                only check that each place still exists
     tests/planted/plant.py -- --skip pictures     arguments after -- go to every test program
 
-All errors go into one copy, each behind a switch, so that one build serves them all. The expression that `errors.toml`
+All mutants go into one copy, each behind a switch, so that one build contains them all. The expression that `errors.toml`
 marks with « » becomes `(if planted(7) { WRONG } else { RIGHT })`; the environment variable NOVAMIND_PLANTED selects
-the wrong one. The tests of the text of the sources (tests/tidy) are left out, because a copy full of switches fails them.
+the wrong one. Tests of the source text (tests/tidy) are skipped, because the switches would fail them.
 
-Stages run in the order of STAGES, each with the errors that no earlier stage noticed. A test program is stopped at its
-first failure. The failing test counts if it fails a second time and passes without the error.
+Stages run in the order of STAGES, each with the mutants that no earlier stage detected. A test program is stopped at its
+first failure. The failing test counts if it fails a second time and passes without the mutant.
 """
 
 import argparse
@@ -32,9 +32,9 @@ import tomllib
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LIST = pathlib.Path(__file__).with_name("errors.toml")
 COPIED = ["Cargo.toml", "Cargo.lock", "clippy.toml", "rustfmt.toml", "README.md", "assets", "configs", "docs", "src", "tests"]
-# Unit tests of the crate with the error, integration tests, everything else.
+# Unit tests of the crate with the mutant, integration tests, everything else.
 STAGES = ["own", "library", "program", "console", "study", "others"]
-# Seconds without the end of a test after which a test program counts as one that hangs.
+# Seconds without a finished test after which a test program counts as hanging.
 LONGEST = 1200
 SWITCH = '''//! The switch of planted errors.
 
@@ -54,13 +54,13 @@ def listed():
 
 
 def crate_of(path):
-    """The name of the crate of a source file."""
+    """Returns the name of the crate of a source file."""
     folder = next(folder for folder in path.parents if (folder / "Cargo.toml").exists())
     return tomllib.loads((folder / "Cargo.toml").read_text())["package"]["name"]
 
 
 def plant(texts, error):
-    """Puts the error behind its switch. Its place is searched in all sources, regardless of line breaks."""
+    """Puts the mutant behind its switch. Its place is searched in all sources, regardless of line breaks."""
     before, right, after = re.split("[«»]", error["place"])
     parts = [r"\s+".join(re.escape(word) for word in part.split(" ")) for part in (before, right, after)]
     pattern = re.compile("({})({})({})".format(*parts))
@@ -75,7 +75,7 @@ def plant(texts, error):
 
 
 def sources(errors):
-    """The sources with errors, by path."""
+    """Returns the sources with mutants, by path."""
     original = {path: path.read_text() for path in sorted((ROOT / "src").rglob("*.rs"))}
     texts = dict(original)
     for error in errors:
@@ -87,7 +87,7 @@ def sources(errors):
 
 
 def copy(folder, changed):
-    """Replaces the copy. Times of files stay, so that cargo builds only what differs from the last copy."""
+    """Replaces the copy. Modification times are kept, so that cargo builds only the differences from the last copy."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     for name in COPIED:
@@ -117,7 +117,7 @@ class Program:
         return stage == ("own" if self.crate == crate else "others")
 
     def first_failure(self, number, arguments):
-        """The name of the first test that fails, or `None` if all pass."""
+        """Returns the name of the first failing test, or `None` if all pass."""
         environment = dict(os.environ, NOVAMIND_PLANTED=str(number), CARGO_MANIFEST_DIR=str(self.folder))
         run = subprocess.Popen(
             [self.path, *arguments], cwd=self.folder, env=environment, text=True, errors="replace",
@@ -141,7 +141,7 @@ class Program:
         return failed or ("(the program stops)" if run.wait() else None)
 
     def notices(self, number, arguments):
-        """The name of a test that fails because of the error, or `None`."""
+        """Returns the name of a test that fails because of the mutant, or `None`."""
         while True:
             skips = [word for name in self.skipped for word in ("--skip", name)]
             failed = self.first_failure(number, [*arguments, *skips])

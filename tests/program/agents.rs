@@ -1,4 +1,4 @@
-//! Programs that have nothing but a shell: `novamind agent`, whose server is found again, started, stopped and lost.
+//! Agents with a shell: `novamind agent` finds, starts, stops and loses its server.
 
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -43,7 +43,7 @@ impl Shell {
         said(self.home.program().arg("agent").args(words), "")
     }
 
-    /// A command that does what it says; its object.
+    /// Runs a command that succeeds; returns its object.
     #[track_caller]
     fn does(&self, words: &[&str]) -> Value {
         let done = self.agent(words);
@@ -66,7 +66,7 @@ impl Shell {
         Some(serde_json::from_slice(&text).expect("JSON"))
     }
 
-    /// Ends the server as nothing in it can prevent.
+    /// Kills the server.
     fn kill(&self) {
         let pid = self.served().as_ref().and_then(pid_of).expect("a server");
         assert!(Command::new("kill").args(["-KILL", &pid]).status().expect("kill").success());
@@ -132,7 +132,7 @@ fn a_server_that_was_killed_is_followed_by_another_one() {
     let first = shell.begin();
     shell.week(7);
     shell.kill();
-    // Commands that come at once find one server.
+    // Concurrent commands find the same server.
     let children: Vec<_> = (0..4)
         .map(|_| {
             shell.home.program().args(["agent", "call", "get_vars"]).spawn().expect("the program starts")
@@ -159,7 +159,7 @@ fn what_a_dead_server_left_behind_leads_nobody_astray() {
     shell.week(7);
     assert_eq!(shell.does(&["stop"])["stopped"], true);
     let run = shell.home.only_run();
-    // Somebody else took the port: what is asked there would not be answered.
+    // Another program took the port; requests to it would get no answer.
     let stranger = std::net::TcpListener::bind(("127.0.0.1", 0)).expect("a port");
     stranger.set_nonblocking(true).expect("a socket");
     let port = stranger.local_addr().expect("an address").port();
@@ -173,8 +173,8 @@ fn what_a_dead_server_left_behind_leads_nobody_astray() {
         assert_eq!(shell.does(&["status"])["day"], 7);
         assert_eq!(shell.does(&["stop"])["stopped"], true);
     }
-    assert!(stranger.accept().is_err(), "nobody asks the stranger");
-    // A person who plays the run keeps it.
+    assert!(stranger.accept().is_err(), "the other program gets no request");
+    // A run that a user plays is not taken over.
     let mut child = shell.home.program().args(["serve", "--run", &name]).spawn().expect("the program starts");
     let mut line = String::new();
     let mut out = std::io::BufReader::new(child.stdout.take().expect("a pipe"));
@@ -250,7 +250,7 @@ fn code_behind_the_name_of_a_tool_is_the_tools() {
 fn a_batch_starts_a_command_that_stops_early_again_and_selects_a_run() {
     let shell = Shell::new();
     let out = shell.home.0.path().join("batch");
-    // One week a start; the second try gives up.
+    // Each start plays one week; the second try gives up.
     let filed = json!({ "rationale": "on", "predictions": predictions() }).to_string();
     let program = env!("CARGO_BIN_EXE_novamind");
     let command = format!(

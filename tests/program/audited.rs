@@ -1,4 +1,4 @@
-//! The audit of a study: contradictions of the records are found, with their line, and honest sessions raise nothing.
+//! The audit of a study finds contradictions of the records with their line, and reports nothing for honest sessions.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -10,7 +10,7 @@ use serde_json::{Map, Value, json};
 
 use crate::support::home::{Home, Said, said};
 
-/// A study, and machines that people play on.
+/// A study and its machines.
 struct Study {
     home: Home,
 }
@@ -72,7 +72,7 @@ impl Study {
         runs.remove(0)
     }
 
-    /// Kinds of findings, with the line of each.
+    /// Returns the kinds of findings, with the line of each.
     fn audit(&self, machines: &[&str]) -> Vec<(String, Option<u64>, String)> {
         let machines: Vec<String> =
             machines.iter().map(|name| self.machine(name).display().to_string()).collect();
@@ -105,12 +105,12 @@ fn hash(text: &str) -> String {
     blake3::hash(text.as_bytes()).to_hex().to_string()
 }
 
-/// Writes lines with a correct chain and correct sums.
+/// Writes lines with a correct chain and correct checksums.
 fn forge(run: &Path, lines: Vec<Map<String, Value>>) {
     forge_with_afterwards(run, lines, Vec::new());
 }
 
-/// The same, with lines after the end.
+/// Writes lines, and lines after the end.
 fn forge_with_afterwards(run: &Path, lines: Vec<Map<String, Value>>, afterwards: Vec<Map<String, Value>>) {
     let (mut text, mut prev) = (String::new(), hash(""));
     let (mut after, count) = (String::new(), lines.len());
@@ -199,7 +199,7 @@ fn audit_finds_records_that_were_changed_cut_or_removed() {
         fs::remove_dir_all(study.machine("one")).expect("gone");
         copy(&good, &study.machine("one"));
     };
-    // A decision is changed; chain and sums are correct.
+    // A decision is changed; chain and checksums are correct.
     let mut changed = lines(&run);
     let call = changed.iter().position(|line| line["kind"] == "call").expect("a call");
     changed[call]["args"]["A"] = json!(30);
@@ -207,7 +207,7 @@ fn audit_finds_records_that_were_changed_cut_or_removed() {
     let kinds = study.kinds(&["one"]);
     assert!(kinds.contains(&"not_reached".to_owned()), "{kinds:?}");
     restore();
-    // The last weeks are cut; the database still holds them.
+    // The last weeks are removed; the database still has them.
     let advance = lines(&run).iter().position(|line| line["kind"] == "advance").expect("a week");
     let text = fs::read_to_string(run.join("trajectory.jsonl")).expect("a trajectory");
     let cut: String = text.lines().take(advance).map(|line| format!("{line}\n")).collect();
@@ -241,7 +241,7 @@ fn edited_manifests_and_clocks_are_found() {
     }
     fs::write(run.join("run.toml"), &good).expect("written");
     assert_eq!(study.audit(&["one"]), []);
-    // The label in the first line and in the file, with a correct chain.
+    // The label in the first line and in the file is changed, with a correct chain.
     let mut told = lines(&run);
     told[0].insert("participant".to_owned(), json!("P02"));
     forge(&run, told.clone());
@@ -250,7 +250,7 @@ fn edited_manifests_and_clocks_are_found() {
     let kinds = study.kinds(&["one"]);
     assert!(kinds.contains(&"assignment".to_owned()), "{kinds:?}");
     fs::write(run.join("run.toml"), &good).expect("written");
-    // A clock that was set back between two lines, as the lines would tell it.
+    // A clock was set back between two lines.
     told[0].insert("participant".to_owned(), json!("P01"));
     let at = told.len() - 2;
     told[at].insert("at".to_owned(), json!("2026-01-01T00:00:00Z"));
@@ -277,8 +277,8 @@ fn audit_reports_that_it_examined_nothing_and_runs_of_another_protocol() {
         assert!(kinds.contains(&kind.to_owned()), "{kinds:?}");
     }
     let said = study.run("one", &["study", "audit", &study.folder()]);
-    assert!(said.code == 1 && !said.out.contains("Nothing was found"), "{}", said.out);
-    // The label has a run, and the collection says so.
+    assert!(said.code == 1 && !said.out.contains("No findings"), "{}", said.out);
+    // The label has a run, which the collection reports.
     let (one, out) =
         (study.machine("one").display().to_string(), study.machine("data").display().to_string());
     let collected = study.home.run(&["study", "collect", &one, "--out", &out, "--protocol", &study.folder()]);
@@ -289,7 +289,7 @@ fn audit_reports_that_it_examined_nothing_and_runs_of_another_protocol() {
     );
     assert!(!collected.out.contains("label P01 has no session;"), "{}", collected.out);
     assert!(collected.out.contains("label P02 has no session\n"), "{}", collected.out);
-    // Under another name it is another study: counted, and no finding of its own.
+    // With another name it is another study: counted, but not a finding.
     fs::write(&path, text.replace("name = \"pilot\"", "name = \"other\"")).expect("written");
     let said = study.run("one", &["study", "audit", &study.folder()]);
     assert!(said.out.contains("Runs of other studies, not examined: 1."), "{}", said.out);
@@ -351,7 +351,7 @@ fn audit_finds_views_of_the_hidden_state_of_a_seed_that_is_still_played() {
         }),
         "{found:?}"
     );
-    assert_eq!(study.audit(&["one"]), [], "nobody else plays the seed there");
+    assert_eq!(study.audit(&["one"]), [], "no other run has the seed there");
     // A debug run of the seed.
     let debug = ["play", "--plain", "--seed", "2718", "--mode", "debug", "--days", "42"];
     assert_eq!(said(study.program("two").args(debug), "quit\n").code, 0);
@@ -362,7 +362,7 @@ fn audit_finds_views_of_the_hidden_state_of_a_seed_that_is_still_played() {
     );
 }
 
-/// The rows of a table, by the names of its columns.
+/// Returns the rows of a table by column names.
 fn rows_of(path: &Path) -> Vec<BTreeMap<String, String>> {
     let mut table = csv::Reader::from_path(path).expect("a table");
     let rows = table.deserialize().collect::<Result<Vec<_>, _>>();
@@ -378,7 +378,7 @@ fn the_audit_counts_as_the_tables_do() {
         "next \"own\" 990000 980000 999000 960000 940000 980000 900000 800000 990000 800000 700000 990000\n";
     study.visit("two", &format!("P02\nyes\n{own}{}quit\n", WEEKS[..2].concat()));
     study.visit("two", &format!("P03\nyes\n{own}{own}"));
-    // Of the second participant one week has one forecast of the person, and half a minute passed before the last.
+    // One week of the second participant has one forecast of their own, and half a minute passed before the last.
     let run = study.only_run("two", "P02");
     let mut told = lines(&run);
     let weeks: Vec<usize> = (0..told.len()).filter(|at| told[*at]["kind"] == "advance").collect();
@@ -431,7 +431,7 @@ fn audit_finds_damaged_lines_after_the_end() {
     study.visit("one", "P01\nnext \"six\" naive\n7\n");
     assert_eq!(study.audit(&["one"]), []);
     let path = study.only_run("one", "P01").join("afterwards.jsonl");
-    let good = fs::read_to_string(&path).expect("what was done after the end");
+    let good = fs::read_to_string(&path).expect("the actions after the end");
     fs::write(&path, good.replacen("\"value\":7", "\"value\":1", 1)).expect("written");
     assert_eq!(study.kinds(&["one"]), ["damaged"]);
 }
@@ -443,16 +443,16 @@ fn copies_and_pipes_do_not_confuse_the_audit() {
     study.visit("one", &format!("P01\nyes\n{}", WEEKS[0]));
     let run = study.only_run("one", "P01");
     let id = run.file_name().expect("a name").to_string_lossy().into_owned();
-    // A run of the study is not played outside of it, nor watched while it is unfinished.
+    // A run of the study cannot be played outside of it, nor watched while it is unfinished.
     for options in [&["--run", &id][..], &["--run", &id, "--watch"]] {
         let said = study.run("one", &[&["--as", "P01", "play", "--plain"], options, &["--strict"]].concat());
         assert_eq!(said.code, 2, "{}", said.out);
         assert!(said.err.contains("belongs to the study"), "{}", said.err);
     }
-    // A copy of a folder of runs is no second session.
+    // A copy of a folder of runs is not a second session.
     copy(&study.machine("one"), &study.machine("copy"));
     assert_eq!(study.kinds(&["one", "copy"]), [] as [&str; 0]);
-    // Pipes in the place of files keep nobody waiting.
+    // Pipes in the place of files block no command.
     let pipes = [
         study.machine("one").join("participants/P02/11112222/trajectory.jsonl"),
         study.machine("one").join("visits.jsonl"),

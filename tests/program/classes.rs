@@ -1,11 +1,11 @@
-//! A class from the command line: handed out, played on machines, collected, shown; and its runs found by every command.
+//! A class from the command line: handed out, played on several machines, collected, shown; every command finds its runs.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::support::home::{Home, id, said};
 
-/// A class of three in a folder, and a machine for each.
+/// A class of three in a folder, and a machine for each student.
 struct Classroom {
     teacher: Home,
 }
@@ -69,7 +69,7 @@ fn a_class_goes_from_hand_outs_to_the_projector() {
 
     let runs = machines[1].runs().display().to_string();
     let collected = room.teacher.run(&["class", "collect", &room.folder(), &archive, &runs]);
-    assert_eq!(collected.code, 1, "somebody is missing: {}", collected.err);
+    assert_eq!(collected.code, 1, "a student is missing: {}", collected.err);
     assert!(
         collected.out.contains("runs: 2 finished") && collected.out.contains("! S03: no submission"),
         "{}",
@@ -94,7 +94,7 @@ fn a_class_goes_from_hand_outs_to_the_projector() {
     assert_eq!(written.code, 0, "{}", written.err);
     assert!(!fs::read_to_string(&page).expect("a page").contains("S0"));
 
-    // An archive of a lesson is whole: who imports it can look at the run.
+    // An archive of a lesson is complete: importing it is enough to view the run.
     let teacher = &room.teacher;
     assert_eq!(teacher.run(&["runs", "import", &archive]).code, 0);
     assert_eq!(teacher.run(&["report", &id(&run)]).code, 0);
@@ -128,5 +128,5 @@ fn every_command_finds_the_runs_of_participants_that_the_list_shows() {
         assert_eq!(answer.code, 0, "{command:?}: {}", answer.err);
     }
     let own = |run: &str| machine.run(&["--as", "P01", "report", run]).code;
-    assert_eq!((own(&first), own(&second)), (0, 3), "a participant finds the own runs only");
+    assert_eq!((own(&first), own(&second)), (0, 3), "a participant finds only their own runs");
 }

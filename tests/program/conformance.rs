@@ -1,4 +1,4 @@
-//! Every tool over HTTP beside the catalogue that is served: fields of results, refusals, and routes.
+//! Every tool over HTTP compared with the served catalog: fields of results, rejections, and routes.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use crate::doors::{NEW, Server};
 use crate::support::home::Home;
 
-/// Names of what a tool returns; one in angle brackets stands for whatever was asked for.
+/// Returns the names of the fields of a result; a name in angle brackets stands for any requested name.
 fn documented(tool: &Value) -> BTreeSet<&str> {
     let returns = tool["returns"].as_array().expect("returns");
     returns.iter().map(|output| output["name"].as_str().expect("a name")).collect()
@@ -57,7 +57,7 @@ fn every_tool_answers_and_refuses_as_the_catalogue_says() {
     routes_are_described(&server);
 }
 
-/// A refusal is one of those that the catalogue names, or of those that every tool has.
+/// Checks that a rejection is in the catalog or common to all tools.
 fn is_documented(tool: &Value, said: &Value) {
     let code = said["code"].as_str().unwrap_or_else(|| panic!("{}: {said}", tool["name"]));
     let own = tool["refusals"].as_array().expect("refusals");
@@ -65,13 +65,13 @@ fn is_documented(tool: &Value, said: &Value) {
     assert!(own.iter().any(|one| one == code) || of_all.contains(&code), "{}: {code}", tool["name"]);
 }
 
-/// What is described answers, with the methods that are described.
+/// Checks that every described route answers with the described methods.
 fn routes_are_described(server: &Server) {
     let described = server.get("/openapi.json");
     let paths = described["paths"].as_object().expect("paths");
     assert!(paths.len() >= 10, "{paths:?}");
     for (path, methods) in paths {
-        // Whoever posts that ends the server: `agent stop`.
+        // This request stops the server, as `agent stop` does.
         let may_be_tried = |method: &&String| path != "/shutdown" || *method != "post";
         for method in methods.as_object().expect("methods").keys().filter(may_be_tried) {
             let (status, said) = server.with_head(&method.to_uppercase(), path, "host: 127.0.0.1\r\n", "");

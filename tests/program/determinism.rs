@@ -1,4 +1,4 @@
-//! The same run is the same run: in another process, on other threads, left and continued, killed in the middle.
+//! The same run in another process, on other threads, closed and continued, and killed gives the same states.
 
 use std::fs;
 use std::io::Write;
@@ -21,7 +21,7 @@ fn program(runs: &Path) -> Command {
     command
 }
 
-/// Runs a policy in the built program; one object per seed, without the time it took.
+/// Runs a policy in the built program; one object per seed, without the duration.
 fn run(command: &mut Command) -> Vec<Value> {
     let output = command.arg("--json").output().expect("the program starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -34,7 +34,7 @@ fn run(command: &mut Command) -> Vec<Value> {
     said.lines().map(parse).collect()
 }
 
-/// A market that fills so fast that whole threads have work after a few weeks.
+/// A market that fills so fast that all threads have work after a few weeks.
 const CROWDED: [&str; 4] = ["--cash", "1e9", "--set", "leads.saturation_base=14.5"];
 
 #[test]
@@ -45,7 +45,7 @@ fn the_built_program_and_the_library_reach_the_same_state() {
         let mut command = program(runs.path());
         command.args(["run", "--policy", name, "--seed", "3", "--until", &until.to_string()]).args(extra);
         let built = run(&mut command).remove(0);
-        let policy = Policy::find(name, &configuration).expect("a shipped policy");
+        let policy = Policy::find(name, &configuration).expect("a bundled policy");
         let mut spec = RunSpec { until: Some(until), ..RunSpec::of_seed(3) };
         if !extra.is_empty() {
             spec.cash = Some(1e9);
@@ -81,7 +81,7 @@ fn figures_and_states_do_not_depend_on_threads() {
 #[test]
 fn a_saved_run_holds_the_state_that_was_reported() {
     let runs = tempfile::tempdir().expect("a folder");
-    // Spending in fractions of dollars: the trajectory has to give back every bit.
+    // Spending in fractions of dollars: the trajectory must preserve every bit.
     let mut command = program(runs.path());
     command.args(["run", "--policy", "P1a", "--seed", "5", "--until", "84", "--save"]);
     let said = run(&mut command).remove(0);
@@ -89,7 +89,7 @@ fn a_saved_run_holds_the_state_that_was_reported() {
     let verified = program(runs.path()).args(["replay", &id, "--verify"]).output().expect("it runs");
     let text = String::from_utf8_lossy(&verified.stdout).into_owned();
     assert!(verified.status.success(), "{}", String::from_utf8_lossy(&verified.stderr));
-    assert!(text.contains("12 states reached again, day 84"), "{text}");
+    assert!(text.contains("12 states verified, day 84"), "{text}");
     let hash = said["state_hash"].as_str().expect("a hash");
     assert!(text.contains(hash), "{text} instead of {hash}");
     let opened = Session::open(&runs.path().join(&id), Access::Write, true).expect("it opens");
@@ -98,7 +98,7 @@ fn a_saved_run_holds_the_state_that_was_reported() {
 
 const WEEKS: u32 = 6;
 
-/// What a player with some turnover does in a week.
+/// Plays a week with typical actions.
 fn play_a_week(session: &mut Session, week: u32) {
     let mut call = |tool: &str, arguments: Value| {
         session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
@@ -125,7 +125,7 @@ fn leaving_at_any_week_changes_nothing() {
     let create = |storage| Session::create(new(storage), &Configuration::shipped()).expect("it begins");
     let mut straight = create(Storage::Memory);
     (0..WEEKS).for_each(|week| play_a_week(&mut straight, week));
-    // Left after every week, and after one of them only.
+    // Closed after every week, and after only one of them.
     for left_after in (0..WEEKS).map(Some).chain([None]) {
         let mut session = create(Storage::Runs(folder.path().to_owned()));
         let place = session.folder().expect("a folder").to_owned();
@@ -156,7 +156,7 @@ fn the_mode_of_a_run_changes_nothing() {
     assert_eq!(hash(Mode::Baseline), debug);
 }
 
-/// State hashes of the weeks of a run, by day.
+/// Returns the state hashes of the weeks of a run, by day.
 fn states(folder: &Path) -> Vec<(u32, String)> {
     let read = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads");
     let closed = read.lines.iter().filter_map(|line| Some((line.day, line.record.closing()?)));
@@ -181,8 +181,8 @@ fn new_run_options() -> Vec<&'static str> {
     [&["--seed", "9", "--days", "56", "--mode", "debug"][..], &CROWDED].concat()
 }
 
-/// How many weeks are complete on the disk, if the last line there is an advance: the next one is being simulated.
-/// Only looks for the kinds of lines, as a look must be much shorter than a week.
+/// Returns the number of complete weeks on disk if the last line is an advance, so that the next week is in progress. Reads only the
+/// kinds of lines, because it must be much faster than a week.
 fn in_a_week(folder: &Path) -> Option<usize> {
     let text = fs::read_to_string(folder.join("trajectory.jsonl")).ok()?;
     let last = text.strip_suffix('\n')?.lines().last()?;
@@ -190,7 +190,7 @@ fn in_a_week(folder: &Path) -> Option<usize> {
     last.contains(r#""kind":"advance""#).then_some(complete)
 }
 
-/// Lets a program work until at least this many weeks are complete and another one runs, and kills it there.
+/// Waits until at least this many weeks are complete and another one runs, and kills the program.
 fn kill_in_a_week(mut child: Child, runs: &Path, complete: usize) {
     let deadline = Instant::now() + Duration::from_secs(60);
     let is_there = || {
@@ -232,18 +232,18 @@ fn a_program_killed_in_the_middle_of_a_week_loses_nothing() {
     for complete in 2..5 {
         kill_in_a_week(child, broken.path(), complete);
         interrupted += usize::from(in_a_week(&only_run(broken.path())).is_some());
-        // All weeks that may be left, so that the look may miss one.
+        // Any number of complete weeks is valid, because the check may miss one.
         child = start(broken.path(), &["--run", "latest"]);
         tell(&mut child, &next.repeat(8));
     }
-    // By luck a week may end between the look and the kill, but hardly three times.
+    // A week may end between the check and the kill, but hardly three times.
     assert!(interrupted > 0, "no week was ever interrupted");
     let folder = only_run(broken.path());
     let output = child.wait_with_output().expect("it ends");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert_eq!(states(&folder), expected);
 
-    // The database, too, is the one of the uninterrupted run.
+    // The database is also that of the uninterrupted run.
     let mut straight = Session::open(&only_run(whole.path()), Access::Write, true).expect("it opens");
     let mut session = Session::open(&folder, Access::Write, true).expect("it opens");
     assert_eq!(session.state_hash(), straight.state_hash());

@@ -1,4 +1,4 @@
-//! The doors for programs: HTTP, the Model Context Protocol, and the Python client.
+//! Interfaces for programs: HTTP, the Model Context Protocol, and the Python client.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
@@ -22,7 +22,7 @@ impl Drop for Server {
     }
 }
 
-/// A status and the JSON beside it.
+/// A status with its JSON.
 type Answered = (u16, Value);
 
 impl Server {
@@ -40,7 +40,7 @@ impl Server {
     pub fn raw(&self, bytes: &[u8]) -> String {
         let mut stream = TcpStream::connect(("127.0.0.1", self.port)).expect("a connection");
         stream.set_read_timeout(Some(Duration::from_secs(60))).expect("a socket");
-        // A server that has had enough closes before everything is sent.
+        // The server may close before everything is sent.
         let _ = stream.write_all(bytes);
         let mut answer = String::new();
         let _ = stream.read_to_string(&mut answer);
@@ -76,7 +76,7 @@ impl Server {
     pub fn stop(mut self) -> i32 {
         let pid = self.child.id().to_string();
         assert!(Command::new("kill").args(["-TERM", &pid]).status().expect("kill").success());
-        self.child.wait().expect("it ends").code().expect("it ends by itself")
+        self.child.wait().expect("it ends").code().expect("it ends on its own")
     }
 }
 
@@ -87,14 +87,14 @@ pub fn predictions() -> Value {
 
 pub const NEW: [&str; 7] = ["--new", "--seed", "7", "--days", "28", "--mode", "sandbox"];
 
-/// Decisions that every door is told.
+/// The same decisions for every interface.
 pub const CALLS: [(&str, &str); 3] = [
     ("set_prices", r#"{"A": 10, "B": 20, "C": null}"#),
     ("set_usage_quotas", r#"{"A": 50000, "B": 200000, "C": 900000}"#),
     ("set_targeted_ad_spend", r#"{"content_marketing": {"S1": 500}}"#),
 ];
 
-/// The hash of the last state of a run of two weeks that left nothing else behind.
+/// Returns the last state hash of a run of two weeks without other effects.
 pub fn last_hash(home: &Home) -> String {
     let id = home.only_run().file_name().expect("a name").to_string_lossy().into_owned();
     let verified = home.run(&["replay", &id, "--verify"]);
@@ -154,10 +154,10 @@ fn a_script_nobody_waits_for_is_stopped() {
         std::thread::sleep(std::time::Duration::from_millis(500));
         stream
     };
-    // Its client goes away: others are answered again. It would run for ten minutes.
+    // Its client disconnects, and others are answered again. The script would run for ten minutes.
     drop(begin());
     assert_eq!(server.get("/vars")["current_day"], 0);
-    // The server is told to end while it runs.
+    // The server is asked to end while it runs.
     let waiting = begin();
     assert_eq!(server.stop(), 0);
     drop(waiting);
@@ -260,7 +260,7 @@ fn hostile_requests_leave_the_run_as_it_is() {
         let answer = server.raw(garbage);
         assert!(answer.is_empty() || answer.starts_with("HTTP/1.1 400"), "{answer}");
     }
-    // Somebody goes away in the middle of a week.
+    // A client disconnects in the middle of a week.
     let body = json!({ "rationale": "on", "predictions": predictions() }).to_string();
     let request = format!("POST /next-week HTTP/1.1\r\n{known}content-length: {}\r\n\r\n{body}", body.len());
     let mut stream = TcpStream::connect(("127.0.0.1", server.port)).expect("a connection");
@@ -301,7 +301,7 @@ fn the_connection_after_the_last_is_told_to_come_back() {
     let held: Vec<TcpStream> = (0..64)
         .map(|_| {
             let mut stream = TcpStream::connect(("127.0.0.1", server.port)).expect("a connection");
-            // An answered request: the server has taken the connection and keeps it.
+            // An answered request shows that the server has accepted the connection.
             stream.write_all(b"GET /health HTTP/1.1\r\nhost: 127.0.0.1\r\n\r\n").expect("sent");
             assert!(stream.read(&mut [0; 1024]).expect("an answer") > 0);
             stream
@@ -468,7 +468,7 @@ assert novamind.query('SELECT COUNT(*) AS n FROM customers')['row_count'] == 1
 
 #[test]
 fn run_of_a_program_with_other_terms_than_a_baseline_is_a_sandbox_and_says_so() {
-    // A client that closes at once: the run has begun.
+    // A client that closes at once: the run has started.
     let mode_of = |options: &[&str]| {
         let home = Home::new();
         let said = home.run(&[&["mcp", "--seed", "3"], options].concat());
@@ -499,7 +499,7 @@ fn run_of_a_program_with_other_terms_than_a_baseline_is_a_sandbox_and_says_so() 
     assert!(mode_of(&["--days", "28", "--mode", "baseline"]).1.contains("28 days needs a study"));
     let help = Home::new().run(&["serve", "--help"]).out;
     let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(help.contains("a baseline run has 500 ") && help.contains("otherwise sandbox]"), "{help}");
+    assert!(help.contains("baseline runs have 500") && help.contains("for programs baseline"), "{help}");
 }
 
 #[test]
@@ -512,6 +512,6 @@ fn client_of_a_run_that_cannot_be_opened_is_answered() {
     assert_eq!((&answer["id"], &answer["jsonrpc"]), (&json!(1), &json!("2.0")));
     let message = answer["error"]["message"].as_str().expect("a message");
     assert!(said.err.contains(message) && message.contains("nothere"), "{answer}");
-    // A client that sends nothing sees the sentence on standard error.
+    // A client that sends nothing sees the message on standard error.
     home.run(&["mcp", "--run", "nothere"]).fails(3, &["nothere"]);
 }

@@ -1,4 +1,4 @@
-//! The edge of the program: exit codes, and how many rows come out.
+//! Exit codes, earlier names, and the number of rows of queries.
 
 use std::fs;
 
@@ -7,16 +7,16 @@ use crate::support::home::{Home, id};
 #[test]
 fn a_bankruptcy_is_exit_code_4_where_the_caller_wants_to_know() {
     let home = Home::new();
-    // Capacity costs $85 a day, whatever is done.
+    // Capacity costs $85 per day in any case.
     let idle = |extra: &[&str]| {
         home.run(&[&["run", "--policy", "P0", "--seed", "3", "--days", "14"], extra].concat())
     };
     let ruined = idle(&["--cash", "500", "--fail-on-bankruptcy"]);
     assert_eq!((ruined.code, ruined.err.as_str()), (4, ""), "{}", ruined.out);
     assert!(ruined.out.contains("bankrupt on day 6"), "{}", ruined.out);
-    assert_eq!(idle(&["--cash", "500"]).code, 0, "nobody asked");
-    assert_eq!(idle(&["--cash", "50000", "--fail-on-bankruptcy"]).code, 0, "nobody is bankrupt");
-    // One of several is enough, wherever it stands in the order of the seeds.
+    assert_eq!(idle(&["--cash", "500"]).code, 0, "the option is not given");
+    assert_eq!(idle(&["--cash", "50000", "--fail-on-bankruptcy"]).code, 0, "no run is bankrupt");
+    // One of several runs is enough, regardless of its position.
     let options = ["--cash", "500", "--fail-on-bankruptcy", "--json"];
     let several =
         home.run(&[&["run", "--policy", "P0", "--seed", "3..4", "--days", "14"], &options[..]].concat());
@@ -43,6 +43,24 @@ fn every_kind_of_failure_has_its_exit_code() {
     }
 }
 
+#[test]
+fn earlier_names_of_commands_and_options_still_work() {
+    let home = Home::new();
+    for command in [&["runs", "rescue"][..], &["lab", "laws"], &["lab", "behaviour"], &["study", "anonymise"]]
+    {
+        assert_eq!(home.run(&[command, &["--help"]].concat()).code, 0, "{command:?}");
+    }
+    let seeded = |option: &str| {
+        let options = ["--new", "--mode", "debug", "--seed", "7", option, "2"];
+        let played = home.play(&options, "step\nback cash > 1\nsince cash > 1\nagain\nretry\n");
+        assert_eq!(played.code, 0, "{option}: {}", played.err);
+        assert!(!played.out.contains("is not a command"), "{option}: {}", played.out);
+        played.out.matches("cash > 1").count()
+    };
+    assert!(seeded("--fault") >= 2);
+    assert_eq!(seeded("--planted"), seeded("--fault"));
+}
+
 fn counting_to(most: u32) -> String {
     format!(
         "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < {most}) SELECT x FROM n"
@@ -65,7 +83,7 @@ fn a_query_brings_five_thousand_rows_whether_or_not_the_database_is_there() {
             assert_eq!(rows(most), expected, "of {most}, the database is {database}");
         }
         let cut = home.run(&["query", &id(&run), &counting_to(5_001), "--format", "json"]);
-        assert!(cut.out.contains("\"truncated\":true"), "what is left out is said");
+        assert!(cut.out.contains("\"truncated\":true"), "omitted rows are reported");
         fs::remove_file(run.join("world.db")).unwrap_or_default();
     }
 }

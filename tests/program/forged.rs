@@ -1,4 +1,4 @@
-//! Records that somebody changed with care: every sum that can be made anew was made anew.
+//! Records that were changed deliberately: every checksum that can be recomputed was recomputed.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -21,7 +21,7 @@ fn hash(text: &str) -> String {
     blake3::hash(text.as_bytes()).to_hex().to_string()
 }
 
-/// The line with a sum that fits it.
+/// Returns the line with a matching checksum.
 fn summed(mut line: Map<String, Value>) -> String {
     line.shift_remove("sum");
     let sum = hash(&Value::Object(line.clone()).to_string())[..16].to_owned();
@@ -29,7 +29,7 @@ fn summed(mut line: Map<String, Value>) -> String {
     Value::Object(line).to_string()
 }
 
-/// The file with every sum made anew, and every link to the line before too if asked.
+/// Returns the file with recomputed checksums, and optionally with recomputed links to the previous lines.
 fn written(lines: Lines, chained: bool) -> String {
     let mut text = String::new();
     let mut before = hash("");
@@ -52,7 +52,7 @@ fn cheaper(lines: &mut Lines) -> usize {
     at
 }
 
-/// An archive taken apart: its files, and a seal that can be made to fit again.
+/// An unpacked archive: its files, and a seal that can be recomputed.
 struct Opened {
     files: BTreeMap<String, Vec<u8>>,
     seal: Seal,
@@ -82,7 +82,7 @@ impl Opened {
         String::from_utf8(self.files[file].clone()).expect("text")
     }
 
-    /// Puts another file in, and a seal that vouches for it.
+    /// Replaces a file and recomputes the seal.
     fn put(&mut self, file: &str, text: String) {
         if file == "trajectory.jsonl" {
             self.seal.last_hash = hash(text.lines().last().expect("lines"));
@@ -135,7 +135,7 @@ fn a_trajectory_that_was_chained_anew_does_not_reach_its_states() {
     let mut lines = lines_of(&fs::read_to_string(&path).expect("text"));
     cheaper(&mut lines);
     fs::write(&path, written(lines, true)).expect("written");
-    // The database would tell that it was made of other lines; without it the states have to.
+    // The database would reveal the change; without it the states must.
     fs::remove_file(run.join("world.db")).expect("it is there");
     fs::remove_file(run.join("snapshot.bin")).unwrap_or_default();
     let said = home.run(&["replay", &id(&run), "--verify"]);
@@ -165,7 +165,7 @@ fn an_archive_that_was_sealed_anew_is_still_read_line_by_line() {
     let said = forged.import(&other);
     assert_eq!(said.code, 3, "another seed than the first line names: {}{}", said.out, said.err);
 
-    // Whoever makes everything anew makes another run; its states tell.
+    // Recomputing everything gives another run, which its states reveal.
     let mut forged = opened();
     let mut lines = lines_of(&forged.text("trajectory.jsonl"));
     cheaper(&mut lines);

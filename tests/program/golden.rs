@@ -1,5 +1,5 @@
-//! Figures agree with the released simulator over many seeds (docs/interfaces/golden.md), and exactly with those of
-//! the last release of this program.
+//! Figures agree with the released simulator over many seeds (docs/interfaces/golden.md), and exactly with the last release of this
+//! program.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -10,7 +10,7 @@ fn data(below: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(below)
 }
 
-/// Policies whose figures are compared in every run of the tests: they lead small companies.
+/// Policies that every test run compares, because their companies are small.
 const FAST: [&str; 2] = ["P6", "P8"];
 
 #[test]
@@ -38,12 +38,12 @@ fn policies_end_where_they_should(policies: &[&str]) {
     figures_stay_where_they_were(policies, &said);
 }
 
-/// Standard errors by which a figure may move against the released simulator from one version to the next. The seeds are
-/// the same, so only a change of the mechanics moves it at all.
+/// Standard errors by which a figure may change against the released simulator between versions. The seeds are the same, so only a
+/// change of the mechanics changes it at all.
 const SWAY: f64 = 0.25;
 
-/// Compares the median deviation of every figure with that of the last release: the verdict of the laboratory allows
-/// whatever chance would do, this only what was there before.
+/// Compares the median deviation of every figure with that of the last release. The verdict of the laboratory allows any difference that
+/// chance explains; this comparison does not.
 fn figures_stay_where_they_were(policies: &[&str], said: &str) {
     let text = fs::read_to_string(data("medians.csv")).expect("the deviations of the last release");
     let mut policy = "";
@@ -82,8 +82,8 @@ fn figures(path: &Path) -> Figures {
     text.lines().skip(1).map(|line| row(line).expect("five columns")).collect()
 }
 
-/// Chance comes from the same streams in every version, so whatever differs was changed in between: by mistake, or with
-/// a new number of the mechanics and figures written anew.
+/// Compares exact figures. Random streams are the same in every version, so any difference is a change of the code: a mistake, or
+/// intended with a new mechanics number and new figures.
 #[track_caller]
 fn pair(name: &str, policy: &str, seeds: &str, until: &str, days: &str) {
     let folder = tempfile::tempdir().expect("a folder");

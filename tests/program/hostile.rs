@@ -1,4 +1,4 @@
-//! A thousand malformed and hostile requests: the server answers on, and the run follows from its lines.
+//! A thousand malformed and hostile requests: the server keeps answering, and the run replays from its lines.
 
 use std::io::Write;
 use std::net::TcpStream;
@@ -13,7 +13,7 @@ use crate::support::home::Home;
 
 const REQUESTS: usize = 1000;
 
-/// Values where another was expected.
+/// Returns a value of an unexpected type.
 fn strange(random: &mut ChaCha8Rng) -> Value {
     match random.random_range(0..12) {
         0 => Value::Null,
@@ -31,7 +31,7 @@ fn strange(random: &mut ChaCha8Rng) -> Value {
     }
 }
 
-/// A body as a program would send it, or nearly.
+/// Returns a body like that of a program, possibly malformed.
 fn body(tools: &[Value], random: &mut ChaCha8Rng) -> String {
     let tool = &tools[random.random_range(0..tools.len())];
     let mut args = tool["example"].clone();
@@ -50,7 +50,7 @@ fn body(tools: &[Value], random: &mut ChaCha8Rng) -> String {
     json!({ "tool": name, "args": if random.random_bool(0.1) { strange(random) } else { args } }).to_string()
 }
 
-/// The text of a request, and the statuses one of which its answer has; none: it may be closed without a word.
+/// Returns a request and the accepted statuses; without any, the connection may be closed without a response.
 fn request(tools: &[Value], known: &str, random: &mut ChaCha8Rng) -> (Vec<u8>, &'static [u16]) {
     let sent = body(tools, random);
     let head = |head: &str, path: &str, length: usize| {
@@ -87,7 +87,7 @@ fn request(tools: &[Value], known: &str, random: &mut ChaCha8Rng) -> (Vec<u8>, &
         }
         7 => (with(head("host: 127.0.0.1\r\n", "/call", sent.len()), &sent), &[401]),
         8 => {
-            // Longer than it says, shorter than it says, or no number.
+            // A content length that is too long, too short, or not a number.
             let length = ["7", "-1", "99999999999999999999", "x"][random.random_range(0..4)];
             let head = format!(
                 "POST /call HTTP/1.1\r\n{known}connection: close\r\ncontent-length: {length}\r\n\r\n"
@@ -137,7 +137,7 @@ fn a_thousand_hostile_requests_leave_the_server_answering_and_the_run_valid() {
     assert_eq!(home.run(&["replay", &id, "--verify"]).code, 0);
 }
 
-/// Ten megabytes are refused before they have arrived.
+/// Ten megabytes are rejected before they have arrived.
 fn large_bodies(server: &Server, known: &str) {
     let text = format!(r#"{{"tool": "{}"}}"#, "x".repeat(10 << 20));
     for path in ["/call", "/query", "/next-week", "/daily-scripts"] {
@@ -146,10 +146,10 @@ fn large_bodies(server: &Server, known: &str) {
     }
 }
 
-/// Of weeks that are asked for together one passes at a time, whether or not those who asked wait for the end.
+/// Of concurrent requests for weeks one runs at a time, whether or not the clients wait for the end.
 fn two_weeks_at_once(server: &Server, known: &str) {
     let day = || server.with_head("GET", "/vars", known, "").1["current_day"].as_u64().expect("a day");
-    // A call of next_week among the hostile ones may have been in order.
+    // One of the hostile calls of next_week may have been valid.
     let before = day();
     let body = json!({ "rationale": "on", "predictions": predictions() }).to_string();
     let statuses: Vec<u16> = thread::scope(|scope| {

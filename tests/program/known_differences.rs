@@ -1,4 +1,4 @@
-//! One example of each line of `docs/known-differences.md`, played through the program and its server.
+//! One example for each line of `docs/known-differences.md`, played through the program and its server.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use crate::doors::{NEW, Server, predictions};
 use crate::support::home::Home;
 
-/// A company with subscribers and companies.
+/// A company with individuals and enterprises.
 const STORY: &str = r#"
 set_prices A=12 B=22.5 C=40
 set_model_tiers B=2 C=5
@@ -44,12 +44,12 @@ sql SELECT message FROM notifications WHERE type = 'deal_won'
 sql SELECT * FROM enterprise_turns LIMIT 1
 "#;
 
-/// What the examples look at.
+/// The runs and answers that the examples check.
 struct Stage {
     home: Home,
     story: Vec<Value>,
     server: Server,
-    /// The folders in which the server plays.
+    /// The folders of the server.
     _served: Home,
 }
 
@@ -64,7 +64,7 @@ impl Stage {
         Stage { home, story, server, _served: served }
     }
 
-    /// The data of the last answer to a line of the story that begins like this.
+    /// Returns the data of the last answer to a line with this prefix.
     fn story(&self, line: &str) -> &Value {
         let is_it = |answer: &&Value| answer["input"].as_str().is_some_and(|input| input.starts_with(line));
         let answer = self.story.iter().rev().find(is_it).unwrap_or_else(|| panic!("{line} was not played"));
@@ -72,7 +72,7 @@ impl Stage {
         &answer["data"]
     }
 
-    /// Answers of another run in plain mode.
+    /// Returns the answers of another run in plain mode.
     fn play(&self, options: &[&str], lines: &str) -> Vec<Value> {
         let home = Home::new();
         home.play(&[&["--json"], options].concat(), lines).objects()
@@ -82,7 +82,7 @@ impl Stage {
         self.play(&["--mode", "baseline", "--participant", "P01", "--seed", "3"], lines)
     }
 
-    /// The story's run in plain mode as text, after its last line.
+    /// Returns the text of plain mode after the last line of the story.
     fn afterwards(&self, lines: &str) -> String {
         self.home.play(&["--run", "latest"], lines).out
     }
@@ -117,7 +117,7 @@ impl Stage {
         has(&self.afterwards(&format!("explain {term}\n")), parts);
     }
 
-    /// The dashboard of the last week of the story.
+    /// Returns the dashboard of the last week.
     fn dashboard(&self) -> &str {
         self.story("next")["dashboard"].as_str().expect("a dashboard")
     }
@@ -462,7 +462,7 @@ const DOCUMENTS_TEXTS_AND_CHANCE: [Example; 4] = [
     }),
 ];
 
-/// The rows and bullets of the page: the text of the first cell or of the bullet.
+/// Returns the rows and bullets of the page: the text of the first cell or of the bullet.
 fn lines_of_the_page() -> Vec<String> {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/known-differences.md");
     let page = std::fs::read_to_string(page).expect("the page");
@@ -493,7 +493,7 @@ fn every_known_difference_has_an_example_that_holds() {
         let own = examples.iter().filter(|(beginning, _)| line.starts_with(beginning));
         assert_eq!(own.count(), 1, "a line of the page has no example, or several: {line}");
     }
-    assert_eq!(lines.len(), examples.len(), "an example belongs to no line");
+    assert_eq!(lines.len(), examples.len(), "an example has no line on the page");
     let stage = Stage::new();
     for (beginning, example) in examples {
         println!("{beginning}");
@@ -523,7 +523,7 @@ fn answers_have_the_form_of_the_release() {
         let name = if tool == "describe_tables" { "table_names" } else { "tool_names" };
         assert_eq!(stage.data(tool, json!({ name: ["all"] })), stage.data(tool, json!({})), "{tool}");
     }
-    // Arguments of targeted operations without a name are the map by group.
+    // Unnamed arguments of targeted operations are the map by group.
     stage.data("set_targeted_ops_spend", json!({ "by_group": {"S1": 5}, "by_plan": {"A": 10} }));
     let cleared = stage.data("set_targeted_ops_spend", json!({}));
     assert_eq!((&cleared["by_group"], &cleared["by_plan"]["A"]), (&json!({}), &json!(10.0)));

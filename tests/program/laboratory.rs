@@ -1,4 +1,4 @@
-//! Commands of the laboratory from a shell: tables, JSON, drawings, wrong grids.
+//! Laboratory commands from a shell: tables, JSON, drawings, invalid grids.
 
 use std::fs;
 
@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use crate::support::home::Home;
 
-/// What a command prints as JSON.
+/// Returns the JSON output of a command.
 fn json(home: &Home, arguments: &[&str]) -> Value {
     let said = home.run(&[arguments, &["--json"]].concat());
     assert_eq!(said.code, 0, "{arguments:?}: {}", said.err);
@@ -33,20 +33,20 @@ fn what_needs_no_run_is_told_in_every_form() {
     let path = drawing.to_string_lossy();
     assert_eq!(home.run(&["lab", "curves", "--svg", &path]).code, 0);
     assert!(fs::read_to_string(&drawing).expect("a drawing").starts_with("<svg"));
-    // Other parameters, another account.
+    // Other parameters give another account.
     let own = |row: usize, arguments: &[&str]| {
         let all = json(&home, &[&["lab", "bound"], arguments].concat());
         all["tables"]["account"]["rows"][row]["own"].as_f64().expect("a number")
     };
     let (development, estimate) = (6, 15);
     let off = ["--scenario", "competitor-off"];
-    assert!(own(development, &off) < own(development, &[]), "without rivals development is cheap");
+    assert!(own(development, &off) < own(development, &[]), "without competitors development is cheap");
     let said = json(&home, &["lab", "bound", "--scenario", "competitor-off"]).to_string();
     assert!(
         said.contains("no rivals: the parameters in force have none") && !said.contains("lucks"),
         "{said}"
     );
-    // Where it is paid once and not three times over, more is left of it, too.
+    // If development is paid once instead of three times, more cash remains.
     let once = ["--slack", "1"];
     assert!(own(estimate, &[once, off].concat()) > own(estimate, &once));
 }
@@ -61,9 +61,9 @@ fn what_is_not_there_is_refused_with_what_is() {
         (vec!["lab", "curves", "S9"], 2, "S1, S2"),
         (vec!["lab", "bound", "--slack", "2.5"], 2, "1, 2, 3 or 4"),
         (vec!["lab", "bound", "--scenario", "short"], 2, "runs of 500 days"),
-        (vec!["lab", "bound", "--set", "run.total_days=200"], 2, "these parameters are of 200 days"),
+        (vec!["lab", "bound", "--set", "run.total_days=200"], 2, "these parameters have 200 days"),
         (vec!["lab", "baseline", "--grid", "none"], 2, "content-ads, paper"),
-        (vec!["lab", "ablate", "--day", "141"], 2, "weeks end"),
+        (vec!["lab", "ablate", "--day", "141"], 2, "last day of a week"),
         (vec!["lab", "ablate", "--policy", "none"], 2, "P1a"),
         (vec!["run", "--policy", "none"], 2, "P1a"),
         (vec!["run", "--scenario", "none", "--policy", "P0"], 2, "default"),
@@ -86,7 +86,7 @@ fn a_grid_of_ones_own_is_played_once_and_a_wrong_one_names_line_and_key() {
     let first = json(&home, &arguments);
     let cash =
         |at: usize| first["tables"]["configurations"]["rows"][at]["median_cash"].as_f64().expect("cash");
-    assert!(cash(0) > cash(1), "a floor that is soon reached ends spending");
+    assert!(cash(0) > cash(1), "a cash floor that is reached early ends spending");
     assert_eq!(first["tables"]["configurations"]["rows"][0]["floor"], "high");
     let store = home.runs().join(".lab/baseline.jsonl");
     let kept = fs::read_to_string(&store).expect("results");

@@ -1,4 +1,4 @@
-//! Large studies: split by an existing scheduler, killed, repeated, put together; a full disk, a stop, wrong places.
+//! Large studies: split by a scheduler, killed, repeated, merged; a full disk, a stop, invalid paths.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -28,13 +28,13 @@ fn study(home: &Home, text: &str) -> String {
     path.to_string_lossy().into_owned()
 }
 
-/// The files in which runs are kept.
+/// Returns the files with cached runs.
 fn kept(home: &Home) -> Vec<PathBuf> {
     let entries = fs::read_dir(home.runs().join(".lab/studies")).into_iter().flatten().flatten();
     entries.map(|entry| entry.path()).collect()
 }
 
-/// Runs that are kept of a shard, or of the study that is not split.
+/// Returns the number of cached runs of a shard, or of the whole study.
 fn kept_runs(home: &Home, ending: &str) -> usize {
     let own = kept(home).into_iter().find(|path| path.to_string_lossy().ends_with(ending));
     let bytes = own.and_then(|path| fs::read(path).ok()).unwrap_or_default();
@@ -46,7 +46,7 @@ fn signal(name: &str, process: &str) {
     assert!(sent.success(), "{name} {process}");
 }
 
-/// Waits until something is so.
+/// Waits until a condition is true.
 fn wait_for(what: &str, mut is_so: impl FnMut() -> bool) {
     let begun = Instant::now();
     while !is_so() {
@@ -55,7 +55,7 @@ fn wait_for(what: &str, mut is_so: impl FnMut() -> bool) {
     }
 }
 
-/// How shards are started: by GNU parallel where it is installed, else by the test itself.
+/// Starts shards with GNU parallel if it is installed, otherwise directly.
 struct Scheduler<'a> {
     home: &'a Home,
     file: &'a str,
@@ -74,7 +74,7 @@ impl Scheduler<'_> {
         Scheduler { home, file, out, has_parallel }
     }
 
-    /// The shell's command of a shard; its process leaves its number.
+    /// Returns the shell command of a shard, which writes its process id.
     fn shard(&self, shard: &str) -> String {
         let folder = self.home.0.path().display();
         format!(
@@ -111,7 +111,7 @@ impl Scheduler<'_> {
         vec![quiet(&mut command)]
     }
 
-    /// Whether all of them did what they were to do, once all have ended.
+    /// Waits for all shards; returns whether all succeeded.
     fn wait(children: Vec<Child>) -> bool {
         let ended = children.into_iter().map(|mut child| child.wait().expect("it ends").success());
         ended.collect::<Vec<bool>>().into_iter().all(|own| own)
@@ -154,7 +154,7 @@ fn shards_of_which_one_was_killed_and_repeated_are_the_study_that_was_not_split(
     assert_eq!(fs::read(&into).expect("rows"), whole.out.as_bytes());
 }
 
-/// Whether the kill cut a line off: it stays, and its run was played again.
+/// Returns whether the kill cut a line off. It stays, and its run was played again.
 fn has_half_a_line(home: &Home, ending: &str) -> bool {
     let own = kept(home).into_iter().find(|path| path.to_string_lossy().ends_with(ending)).expect("a file");
     let text = fs::read_to_string(own).expect("lines");
@@ -194,7 +194,7 @@ fn a_full_disk_loses_nothing_that_was_kept() {
     let into = home.0.path().join("few.csv").to_string_lossy().into_owned();
     let whole = alone.run(&["lab", "study", &file]).out;
     let program = env!("CARGO_BIN_EXE_novamind");
-    // Blocks of 512 bytes: room for some of the runs, and then for all of them but not for the rows.
+    // Blocks of 512 bytes: space for some of the runs, and then for all of them but not for the rows.
     let limited = |blocks: usize, more: &str| {
         let script = format!(
             "trap '' XFSZ; ulimit -f {blocks}; exec '{program}' lab study '{file}' --out '{into}' {more}"
@@ -205,11 +205,11 @@ fn a_full_disk_loses_nothing_that_was_kept() {
     let before = kept_runs(&home, ".jsonl");
     assert!((1..20).contains(&before), "{before}");
     let last = fs::read(&kept(&home)[0]).expect("runs");
-    assert!(last.ends_with(b"\n"), "what did not fit is taken back");
-    assert_eq!(home.run(&["lab", "study", &file]).out, whole, "there is room again");
+    assert!(last.ends_with(b"\n"), "the part that did not fit is removed");
+    assert_eq!(home.run(&["lab", "study", &file]).out, whole, "there is space again");
     assert_eq!(kept_runs(&home, ".jsonl"), 20);
-    limited(1, "").fails(1, &["few.csv", "File too large", "runs are kept"]);
-    assert!(!Path::new(&into).exists(), "half a table is none");
+    limited(1, "").fails(1, &["few.csv", "File too large", "finished runs are saved"]);
+    assert!(!Path::new(&into).exists(), "an incomplete table is not written");
     let told = home.run(&["lab", "study", &file, "--out", &into]);
     assert_eq!(told.code, 0, "{}", told.err);
     assert_eq!(fs::read_to_string(&into).expect("rows"), whole);
@@ -265,7 +265,7 @@ fn what_is_read_is_not_replaced_by_what_is_written() {
     let place = |name: &str| home.0.path().join(name).to_string_lossy().into_owned();
     let twice = place("./rows");
     for places in [&["--out", &file][..], &["--svg", &file], &["--out", &place("rows"), "--svg", &twice]] {
-        home.run(&[&["lab", "study", &file], places].concat()).fails(2, &["replace"]);
+        home.run(&[&["lab", "study", &file], places].concat()).fails(2, &["overwrit"]);
     }
     assert_eq!(fs::read_to_string(&file).expect("the study"), text);
     let folder = place("shards");

@@ -1,4 +1,4 @@
-//! Lessons of one's own, as the author's guide says, and lessons line by line.
+//! Your own lessons, as in the guide for authors, and lessons in plain mode.
 
 use std::fs;
 
@@ -22,9 +22,9 @@ fn a_lesson_is_copied_changed_and_checked() {
     let [plan, texts] =
         ["toml", "md"].map(|ending| home.0.path().join(format!("configuration/lessons/late-help.{ending}")));
     assert!(fs::read_to_string(texts).expect("texts").contains("## For the teacher"));
-    // What is there is never replaced.
+    // Existing lessons are never replaced.
     for taken in ["late-help", "ladder"] {
-        let message = format!("there is a lesson {taken} already");
+        let message = format!("lesson {taken} already exists");
         home.run(&["lesson", "copy", "ladder", taken]).fails(2, &[&message]);
     }
     for no_name in ["", "two words"] {

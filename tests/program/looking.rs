@@ -1,8 +1,8 @@
-//! `novamind lab metrics` and `novamind lab diff`: what is hidden of runs that may be looked into, and of no others.
+//! `novamind lab metrics` and `novamind lab diff`: hidden figures of runs that may be inspected.
 
 use crate::support::home::Home;
 
-/// Runs of the policy P0, kept; the figures that were written meanwhile.
+/// Saves runs of the policy P0; returns the figures that were written.
 fn kept(home: &Home, seed: &str) -> String {
     let file = home.0.path().join(format!("{seed}.csv"));
     let path = file.to_str().expect("a path");
@@ -19,7 +19,7 @@ fn figures_of_a_kept_run_are_those_that_were_written_when_it_ran() {
     let said = home.run(&["lab", "metrics", "latest"]);
     assert_eq!((said.code, said.err.as_str()), (0, ""));
     assert!(said.out == live, "{} and {} bytes", said.out.len(), live.len());
-    // Looking is recorded, and the run verifies.
+    // The inspection is recorded, and the run verifies.
     assert_eq!(home.run(&["replay", "latest", "--verify"]).code, 0);
 }
 
@@ -77,9 +77,9 @@ fn why_tells_the_causes_of_a_group_and_keeps_what_is_hidden() {
         let [played, answers @ ..] = &said.out.split("> why ").collect::<Vec<_>>()[..] else {
             panic!("{}", said.out)
         };
-        // The report of the week lists what was set and what changed, and blames nothing.
+        // The report on the week lists settings and changes, without causes.
         let (_, report) = played.split_once("> report").expect("a report");
-        assert!(report.contains("decided before it: price A: 12 → 40 $/month"), "{report}");
+        assert!(report.contains("decisions before it: price A: 12 → 40 $/month"), "{report}");
         for word in ["because", "due to", "cause", "may be", "led to", "thanks to", "blame"] {
             assert!(!report.contains(word), "{word}: {report}");
         }

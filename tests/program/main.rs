@@ -1,4 +1,4 @@
-//! Stories of the built program: pipes, scripts, files, archives, terminals; and its figures beside recorded ones.
+//! Tests of the built program: pipes, scripts, files, archives, terminals, and its figures compared with recorded ones.
 
 #[cfg(all(feature = "server", unix))]
 mod agents;

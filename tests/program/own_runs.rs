@@ -1,11 +1,11 @@
-//! The laboratory's tables of own runs: results beside the published ones, behaviour, common luck.
+//! The laboratory's tables of your runs: results compared with published ones, behavior, common random draws.
 
 use std::collections::BTreeMap;
 use std::fs;
 
 use crate::support::home::{Home, Said, id};
 
-/// Rows of comma-separated values by the names of their columns.
+/// Returns rows of comma-separated values by column names.
 fn rows(said: &Said) -> Vec<BTreeMap<String, String>> {
     assert_eq!(said.code, 0, "{}", said.err);
     let mut reader = csv::Reader::from_reader(said.out.as_bytes());
@@ -131,7 +131,7 @@ fn many_runs_are_compared_in_rows_that_fit() {
     }
 }
 
-/// Commands of a section of the page with what they say: the first two cells of the rows of its table, by command.
+/// Returns the first two cells of the rows of a section's table, by command.
 fn claims_of(section: &str) -> BTreeMap<&'static str, Vec<&'static str>> {
     let page = include_str!("../../docs/experiments.md");
     let (_, from) = page.split_once(&format!("\n## {section}\n")).expect(section);

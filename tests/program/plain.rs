@@ -1,4 +1,4 @@
-//! Stories of plain mode through the built program: pipes, scripts, refusals, the end.
+//! Plain mode through the built program: pipes, scripts, rejections, exits.
 
 use std::io::Write;
 use std::path::Path;
@@ -12,7 +12,7 @@ fn program(runs: &Path) -> Command {
     command
 }
 
-/// Plays lines; returns what was said on standard output and the exit code.
+/// Plays lines; returns standard output and the exit code.
 fn play(runs: &Path, options: &[&str], lines: impl AsRef<[u8]>) -> (String, i32) {
     let mut child = program(runs)
         .args(["play", "--plain"])
@@ -25,7 +25,7 @@ fn play(runs: &Path, options: &[&str], lines: impl AsRef<[u8]>) -> (String, i32)
     // A program that ends early does not read the rest.
     let _ = child.stdin.take().expect("a pipe").write_all(lines.as_ref());
     let Output { status, stdout, stderr } = child.wait_with_output().expect("the program ends");
-    let code = status.code().expect("it ends by itself");
+    let code = status.code().expect("it ends on its own");
     assert!(stderr.is_empty(), "standard error is silent: {}", String::from_utf8_lossy(&stderr));
     (String::from_utf8(stdout).expect("UTF-8"), code)
 }
@@ -120,7 +120,7 @@ fn a_line_that_cannot_be_read_says_where_and_what_is_near() {
     assert!(said[9]["error"].as_str().is_some_and(|text| text.contains("ledger")));
 }
 
-/// A list of deals may stand without its name; nobody is there yet to be offered anything.
+/// A list of deals may be given without its name; there is no enterprise yet.
 #[test]
 fn deals_are_written_as_lists() {
     let runs = tempfile::tempdir().expect("a folder");
@@ -220,7 +220,7 @@ fn termination_at_the_prompt_leaves_at_once_with_everything_saved() {
         line.clear();
         assert!(said.read_line(&mut line).expect("readable") > 0, "it ended");
     }
-    // The answer is out, so the line is on the disk; whether the prompt is reached yet does not matter.
+    // The answer was printed, so the line is on disk; the prompt may not have been reached yet.
     let kill = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().expect("kill runs");
     assert!(kill.success());
     let rest = std::io::read_to_string(said).expect("readable");
@@ -283,7 +283,7 @@ fn words_are_explained() {
     ] {
         assert!(said.contains(part), "{part} is missing in\n{said}");
     }
-    assert_eq!(said.matches("Runway (money)").count(), 2, "help knows terms too");
+    assert_eq!(said.matches("Runway (money)").count(), 2, "help also explains terms");
 }
 
 #[test]
@@ -317,7 +317,7 @@ fn weeks_and_runs_are_told() {
         "> report\nrefused no_week_yet: no week has run yet; next runs one\n",
         "> report\nweek to day 7: cash change -$",
         "capacity -$",
-        "decided before it: price A: 0 → 12 $/month",
+        "decisions before it: price A: 0 → 12 $/month",
         "forecast from 1 week ago: inside the interval, point ",
         "new: ",
         "> report run\n# NovaMind · run ",
@@ -384,7 +384,7 @@ fn the_views_of_the_xray_answer_in_words_and_as_data() {
     let debug = ["--seed", "7", "--days", "90", "--mode", "debug"];
     let (said, _) = play(runs.path(), &[&debug[..], &["--json"]].concat(), &lines);
     let said = objects(&said);
-    // The last line tells of the end of the input.
+    // The last line reports the end of the input.
     let answer = |at: usize| &said[said.len() - views.len() - 1 + at];
     let data = |at: usize| &answer(at)["data"];
     let number = |value: &serde_json::Value| value.as_f64().expect("a number");
@@ -407,13 +407,13 @@ fn the_views_of_the_xray_answer_in_words_and_as_data() {
     for (at, told) in [
         (7, "xray has no view qualty; did you mean quality?"),
         (8, "there is no group S9; did you mean S1 or S2 or S3?"),
-        (9, "name a group, and a day or none: xray quality S2 84"),
+        (9, "give a group and optionally a day: xray quality S2 84"),
         (10, "a whole number is expected"),
-        (11, "no draws of servce can be told; did you mean service or surge?"),
+        (11, "there are no draws of servce; did you mean service or surge?"),
         (12, "choose a number of draws from 1 to 1000"),
         (13, "there is no day 8; choose a day from 1 to 7"),
         (14, "a whole number is expected"),
-        (15, "name a group, and a day or none: xray reputation S2 84"),
+        (15, "give a group and optionally a day: xray reputation S2 84"),
     ] {
         assert_eq!(answer(at)["error"], told, "{}", views[at]);
     }
@@ -430,7 +430,7 @@ fn the_views_of_the_xray_answer_in_words_and_as_data() {
     ] {
         assert!(said.contains(part), "{part} is missing in\n{said}");
     }
-    // In a sandbox run nothing that is asked makes a difference.
+    // In a sandbox run the answer does not depend on the question.
     let (said, _) = play(runs.path(), &["--seed", "7", "--days", "90", "--json"], &lines);
     let said = objects(&said);
     let answers = &said[said.len() - views.len() - 1..said.len() - 1];
@@ -451,7 +451,7 @@ break
 run 70
 back 1
 back 9
-back churn(S1) > 5% over 7
+since churn(S1) > 5% over 7
 find leads(S1) > 0
 who reputation(S1)
 who cash 3
@@ -497,10 +497,10 @@ run 3 until subscribers(S1) < 0   # never
     assert_eq!(answers[12]["error"], "a whole number is expected, not yesterday");
     assert_eq!(data(13)["removed"].as_array().map(Vec::len), Some(2));
     assert_eq!(answers[14]["code"], "usage");
-    assert_eq!(answers[15]["error"], "run needs a number of days, for instance run 28");
+    assert_eq!(answers[15]["error"], "run needs a number of days, for example run 28");
     assert_eq!((&answers[16]["error"], &answers[16]["column"]), (&"a number is missing".into(), &19.into()));
     assert_eq!((&data(17)["day"], &data(17)["stopped_by"]), (&(day + 3).into(), &serde_json::json!([])));
-    // In a run that may not be looked into, every one of them is refused alike before anything of it is read.
+    // In a run without permission to inspect, all of them are rejected before anything is parsed.
     let (said, _) =
         play(runs.path(), &["--seed", "7", "--days", "28", "--json"], format!("{EXAMPLE}{asked}"));
     let said = objects(&said);
@@ -565,7 +565,7 @@ fn hidden_tables_answer_in_plain_mode_and_from_the_command_line() {
         .find_map(|entry| std::fs::read_to_string(entry.path().join("trajectory.jsonl")).ok());
     let lines = lines.expect("a run");
     assert_eq!(lines.matches("\"kind\":\"xray\"").count(), 4, "each that was let through is a line");
-    // Elsewhere the answer is the same whatever is asked for.
+    // In other runs the answer is the same for any question.
     let (said, _) =
         play(runs.path(), &["--seed", "7", "--days", "28", "--json"], format!("{EXAMPLE}\n{asked}"));
     let said = objects(&said);
@@ -602,7 +602,7 @@ fn parameters_are_set_in_debug_runs_and_refused_in_others() {
     let lines = format!("{EXAMPLE}\n{}\n", commands.join("\n"));
     let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--mode", "debug", "--json"], &lines);
     let said = objects(&said);
-    // Behind the answers stands where the run was saved.
+    // The last line states where the run was saved.
     let first = said.len() - 1 - commands.len();
     let answer = |at: usize| &said[first + at];
     assert_eq!(answer(0)["data"]["in_force"], serde_json::json!([]));
@@ -652,16 +652,16 @@ fn the_curve_of_a_group_is_told_with_what_leads_would_do() {
     let conversion = |end: &str| data(1)["conversion"][end].as_f64().expect("a share");
     assert!(conversion("least") < conversion("likely") && conversion("likely") < conversion("most"));
     for (at, words) in [
-        (2, "name a group, and a price with a quality or neither"),
+        (2, "give a group, and optionally a price and a quality"),
         (3, "there is no group S9; did you mean"),
-        (4, "name a group, and a price with a quality or neither"),
-        (5, "numbers of at least 0"),
+        (4, "give a group, and optionally a price and a quality"),
+        (5, "numbers from 0"),
         (6, "group_not_discovered"),
         (7, "curve GROUP PRICE QUALITY"),
     ] {
         assert!(told[at].to_string().contains(words), "{words}: {}", told[at]);
     }
-    // In a debug run the same words are a look.
+    // In a debug run the same commands are recorded inspections.
     let (said, _) =
         play(runs.path(), &["--seed", "7", "--days", "28", "--mode", "debug"], "curve S1\ncurve D_S05\n");
     assert!(

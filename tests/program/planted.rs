@@ -1,4 +1,4 @@
-//! The answers to the planted faults: every first difference and every figure on the page is what the program shows.
+//! The answers to the seeded faults: every first difference and every figure on the page is what the program shows.
 
 use crate::support::home::{Home, Said};
 
@@ -30,13 +30,13 @@ fn rows() -> Vec<Row> {
     ANSWERS.lines().filter(is_row).map(of).collect()
 }
 
-/// The decisions that the walk-through lets play.
+/// Returns the decisions of the walkthrough.
 fn decisions() -> String {
     let from = WALK.find("set_prices {").expect("decisions");
     WALK[from..].split("```").next().expect("their end").to_owned()
 }
 
-/// Figures with decimals in a text.
+/// Returns the decimal figures in a text.
 fn figures(text: &str) -> Vec<&str> {
     let words = text.split(|letter: char| letter.is_whitespace() || ",;:`()".contains(letter));
     let clean = words.map(|word| word.trim_matches(|letter| "+-.$".contains(letter)));
@@ -84,10 +84,10 @@ fn the_page_of_answers_says_what_the_program_shows() {
                 let named = what.trim().split(' ').next().unwrap_or_default();
                 assert!(diff.contains(named), "{}: {what}: {diff}", row.number);
             }
-            None => assert!(diff.starts_with("the runs are alike on every day"), "{}: {diff}", row.number),
+            None => assert!(diff.starts_with("the runs are equal on every day"), "{}: {diff}", row.number),
         }
         let shown = ask(&home, &faulty, &row.commands);
-        // What the sound run shows is told beside it; a row that moves on would move it on, too.
+        // The figures of the correct run are listed, too; a row of a changed figure would change them.
         let moves_on = row.commands.iter().any(|line| line.starts_with("run "));
         let beside = if moves_on { String::new() } else { ask(&home, &sound, &row.commands) };
         let told = figures(&row.shown);

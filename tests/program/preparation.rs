@@ -1,4 +1,4 @@
-//! What an experimenter does around the sessions of a study: check, assign, watch, note.
+//! Preparation and supervision of a study: check, assign, watch, notes.
 
 use std::fs;
 use std::path::PathBuf;
@@ -69,7 +69,7 @@ fn settings_that_were_removed_are_named_and_do_nothing() {
     let audited = lab.run("audit", &[&lab.path("m1").display().to_string()]);
     assert_eq!(audited.code, 0, "{}{}", audited.out, audited.err);
     assert!(audited.err.contains("[integrity] witness was removed"), "{}", audited.err);
-    // A key that never existed is still refused.
+    // A key that never existed is still rejected.
     lab.edit("code_words = true", "code_word = true");
     lab.run("check", &[]).fails(3, &["study.toml", "code_word"]);
 }
@@ -88,7 +88,7 @@ fn a_check_names_what_a_session_of_this_length_cannot_do() {
     assert_eq!(told.code, 0, "{}", told.err);
     for words in [
         "ok    world       scenario default\n",
-        "note  questions   questions/week.toml asks after week 9: a session has 4 weeks",
+        "note  questions   questions/week.toml is due after week 9: a session has 4 weeks",
         "note  forecasts   of 4 weeks' forecasts come due: 4 looking 7 days ahead, 1 looking 28 days ahead, 0 looking 84",
     ] {
         assert!(told.out.contains(words), "{words} is missing in\n{}", told.out);
@@ -96,7 +96,7 @@ fn a_check_names_what_a_session_of_this_length_cannot_do() {
     questionnaire("9");
     let told = lab.run("check", &[]);
     assert!(
-        told.code == 1 && told.out.contains("WRONG questions   questions/week.toml asks"),
+        told.code == 1 && told.out.contains("WRONG questions   questions/week.toml is due"),
         "{}",
         told.out
     );
@@ -120,7 +120,7 @@ fn an_assignment_grows_and_keeps_the_rows_that_are_there() {
     lab.run("assign", &["--add", "3"]).fails(2, &["no assignment yet"]);
     lab.run("assign", &["--participants", "8", "--draw", "6"]).fails(2, &["draw = 5"]);
     let made = lab.run("assign", &["--participants", "8"]);
-    assert!(made.out.contains("the last block has 2 of 6 cells: with 12 participants"), "{}", made.out);
+    assert!(made.out.contains("the last block has 2 of 6 cells; with 12 participants"), "{}", made.out);
     let told = lab.run("check", &[]).out;
     assert!(told.contains("8 labels in blocks of 6: the last block has 2 of 6 cells"), "{told}");
     let first = lab.assignment();
@@ -134,10 +134,10 @@ fn an_assignment_grows_and_keeps_the_rows_that_are_there() {
     cells.iter_mut().for_each(|cell| *cell = cell.rsplit_once(',').expect("an order").0);
     cells.sort_unstable();
     assert_eq!(cells, ["A,11", "A,12", "A,13", "B,11", "B,12", "B,13"]);
-    // Rows that somebody wrote stay as they are, and so does the file.
+    // Rows edited by hand do not change, and neither does the file.
     let by_hand = second.replacen(",A,", ",C,", 1);
     fs::write(lab.path("pilot/assignment.csv"), &by_hand).expect("written");
-    lab.run("assign", &["--add", "1"]).fails(1, &["are not those that are drawn with 5", "by hand"]);
+    lab.run("assign", &["--add", "1"]).fails(1, &["were not drawn with seed 5", "by hand"]);
     assert_eq!(lab.assignment(), by_hand);
 }
 
@@ -151,11 +151,15 @@ fn a_remark_lies_beside_the_runs_of_its_label() {
     let note =
         |label: &str, text: &str| lab.run("watch", &[&machines[0], &machines[1], "--note", label, text]);
     let said = note("P02", "came late");
-    assert!(said.out.contains("noted for P02 in") && said.out.contains("m2/remarks.jsonl"), "{}", said.out);
+    assert!(
+        said.out.contains("recorded a note for P02 in") && said.out.contains("m2/remarks.jsonl"),
+        "{}",
+        said.out
+    );
     assert!(note("P01", "asked what a lead is").out.contains("m1/remarks.jsonl"));
-    assert_eq!(note("P03", "has not come").code, 0, "a place of the assignment");
+    assert_eq!(note("P03", "has not come").code, 0, "a label of the assignment");
     assert_eq!(note("P02", "left early").code, 0);
-    note("P99", "who is it?").fails(2, &["P99 is no label of this study", "Nothing was noted"]);
+    note("P99", "who is it?").fails(2, &["P99 is not a label of this study", "Nothing was recorded"]);
     let shown = lab.run("watch", &[&machines[0], &machines[1], "--once"]).out;
     let texts = ["came late", "asked what a lead is", "has not come", "left early"];
     let places: Vec<usize> = texts.iter().map(|text| shown.find(text).expect(text)).collect();

@@ -1,4 +1,4 @@
-//! The Python client: threads, several runs in one process, and retries of requests that got no answer.
+//! The Python client: threads, several runs in one process, and retries of requests without a response.
 
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -10,7 +10,7 @@ use serde_json::Value;
 use crate::doors::{NEW, Server};
 use crate::support::home::Home;
 
-/// The client, written into the folder of a home; `None` without Python.
+/// Writes the client to a folder; `None` without Python.
 fn client(home: &Home) -> Option<PathBuf> {
     if Command::new("python3").arg("--version").stdout(Stdio::null()).status().is_err() {
         println!("SKIPPED: python3 is not installed");
@@ -99,7 +99,7 @@ else:
     assert_eq!((price(&home), price(&other)), (Some(15.into()), Some(14.into())));
 }
 
-/// Reads one message of HTTP, head and body.
+/// Reads one HTTP message, head and body.
 fn message(stream: &mut TcpStream) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut piece = [0; 4096];
@@ -138,7 +138,7 @@ fn a_request_whose_answer_was_lost_is_sent_again_and_runs_once() {
             let mut to = TcpStream::connect(("127.0.0.1", served)).expect("a connection");
             to.write_all(&asked).expect("sent");
             let answer = message(&mut to);
-            // The answer to the first attempt is lost.
+            // The response to the first attempt is lost.
             if attempt == 2 {
                 from.write_all(&answer).expect("sent");
             }

@@ -1,10 +1,10 @@
-//! Scripts in Python through the built program: without python3 they are refused, and what was recorded with it stands.
+//! Python scripts through the built program: without python3 they are rejected, and recorded answers are still used.
 
 use std::process::Command;
 
 use crate::support::home::{Home, Said, said};
 
-/// The program on a machine without python3.
+/// Runs the program without python3 on the path.
 fn without_python(home: &Home, arguments: &[&str], lines: &str) -> Said {
     said(home.program().env("PATH", home.runs()).args(arguments), lines)
 }
@@ -71,8 +71,8 @@ next naive
     let verified = home.run(&["replay", &id, "--verify"]);
     let without = without_python(&home, &["replay", &id, "--verify"], "");
     assert_eq!((verified.code, verified.out.as_str()), (0, without.out.as_str()), "{}", without.err);
-    assert!(verified.out.contains("2 states reached again"), "{}", verified.out);
-    // Simulated from the first line on, the dashboard is the one that was told.
+    assert!(verified.out.contains("2 states verified"), "{}", verified.out);
+    // Simulated from the first line, the dashboard is the one that was shown.
     std::fs::remove_file(home.only_run().join("snapshot.bin")).ok();
     let opened = without_python(&home, &["play", "--plain", "--run", &id], "dashboard\n");
     assert_eq!(opened.code, 0, "{}", opened.err);

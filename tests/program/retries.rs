@@ -1,4 +1,4 @@
-//! Retries of requests over HTTP, from several threads, with a server that is killed and started again.
+//! Retries of requests over HTTP, from several threads, with a server that is killed and restarted.
 
 use serde_json::{Value, json};
 
@@ -75,7 +75,7 @@ fn a_week_refuses_arguments_that_it_does_not_have() {
         assert_eq!(answer["field"], "expected_dy");
     }
     assert_eq!(lines(&home, "call").len(), 2, "both are on record");
-    // The id and the day may stand among the arguments of a call or next to them.
+    // The id and the day may be among the arguments of a call or next to them.
     let filed = json!({ "rationale": "on", "predictions": predictions() });
     let mut within = filed.clone();
     within["request_id"] = "b".into();

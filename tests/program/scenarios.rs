@@ -33,7 +33,7 @@ fn all_scenarios_are_listed_and_shown_with_their_parameters() {
     assert_eq!(usual["series"]["replayed"].as_str(), Some("none"));
 }
 
-/// The hidden index and the rivals are the recorded ones, whatever the seed.
+/// The hidden index and the competitors are the recorded ones for every seed.
 #[test]
 fn a_run_under_the_reference_scenario_meets_the_recorded_market() {
     let folder = tempfile::tempdir().expect("a folder");

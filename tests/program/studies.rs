@@ -1,4 +1,4 @@
-//! Studies with people, as experimenter and participants meet them.
+//! Studies with people, from the view of experimenter and participants.
 
 use std::fs;
 use std::path::PathBuf;
@@ -10,7 +10,7 @@ use novamind::study::{VisitEvent, visits};
 
 use crate::support::home::{Home, Said, id, said};
 
-/// A study of five weeks with questions, on a machine of its own.
+/// A study of five weeks with questions, with its own machine.
 struct Lab(Home);
 
 impl Lab {
@@ -59,7 +59,7 @@ impl Lab {
 
 const WEEKS: &str = "next \"a\" naive\nnext \"b\" naive\nnext \"c\" naive\nnext \"d\" naive\n";
 
-/// Questionnaire, occasion, question and value of every answer of a run.
+/// Returns questionnaire, occasion, question and value of every answer of a run.
 fn answers(run: &std::path::Path) -> Vec<String> {
     let trajectory = Trajectory::read(&run.join("trajectory.jsonl")).expect("it reads");
     let after = lines_afterwards(run, &trajectory).expect("it reads");
@@ -85,10 +85,10 @@ fn a_participant_is_led_from_the_label_to_the_thanks() {
         assert!(first.out.contains(part), "{part} is missing in\n{}", first.out);
     }
     assert!(!first.out.contains("seed"), "participants do not learn the seed");
-    // What leads back can be typed as it is, and names neither label nor code.
-    let again = format!("`novamind --study {}` continues: give the same label.", lab.folder());
+    // The command that continues can be typed as shown, and contains neither label nor code.
+    let again = format!("To continue, run `novamind --study {}` and give the same label.", lab.folder());
     assert!(first.out.contains(&again), "{again} is missing in\n{}", first.out);
-    // They come back, end the run, and answer what is asked then.
+    // They return, end the run, and answer the remaining questions.
     let second = lab.visit("P01\nnext \"e\" naive\nI tried to grow.\n1, 3\n");
     for part in ["run ended: horizon", "What did you try to do", "Thank you"] {
         assert!(second.out.contains(part), "{part} is missing in\n{}", second.out);
@@ -149,7 +149,7 @@ fn who_declines_or_withdraws_leaves_no_run() {
     assert_eq!(left, ["withdrawn.toml"]);
     assert!(lab.visit("P03\n").out.contains("You have withdrawn"));
     assert!(!lab.0.runs().join("participants/P02").exists());
-    // Both are counted, and stand in the table of visits.
+    // Both are counted and in the table of visits.
     let counted = "2 came: 1 declined, 1 withdrew, 0 finished, 0 neither · refused: 0 labels, 0 codes";
     for command in ["watch", "audit"] {
         let said = lab.0.run(&["study", command, &lab.folder()]);
@@ -184,29 +184,29 @@ fn at_every_prompt_and_question_one_can_leave_or_withdraw() {
     assert_eq!(lab.visit("quit\n").code, 0);
     let read = lab.visit("P01\nmaybe\nquit\n");
     assert!(read.out.contains("\"maybe\" is neither yes nor no"), "{}", read.out);
-    assert!(read.out.contains("You have left.") && !read.out.contains("practise"), "{}", read.out);
+    assert!(read.out.contains("You have left.") && !read.out.contains("Type practice"), "{}", read.out);
     let passed = lab.visit("P01\nyes\nperhaps\nskip\nabc\n300\nquit\n");
     for part in
-        ["neither practice nor skip", "The session begins.", "quit leaves, withdraw erases", "continues"]
+        ["neither practice nor skip", "The session begins.", "quit leaves, withdraw erases", "To continue"]
     {
         assert!(passed.out.contains(part), "{part} is missing in\n{}", passed.out);
     }
     let back = lab.visit(&format!("P01\n9\n2\nhelp\nhelp branch\n{WEEKS}quit\n"));
     for part in
-        ["The session goes on before its first week.", "withdraw                 erase", "week 4 done"]
+        ["The session continues before its first week.", "withdraw                 erase", "week 4 done"]
     {
         assert!(back.out.contains(part), "{part} is missing in\n{}", back.out);
     }
     let refused =
         ["branch WEEK", "step [DAYS]", "xray VIEW", "lens CUSTOMER", "set KEY", "The session begins"];
     assert_eq!(refused.map(|part| back.out.contains(part)), [false; 6], "{}", back.out);
-    assert!(lab.visit("P01\nquit\n").out.contains("The session goes on after week 4."));
+    assert!(lab.visit("P01\nquit\n").out.contains("The session continues after week 4."));
     let trajectory = Trajectory::read(&lab.only_run("P01").join("trajectory.jsonl")).expect("it reads");
     let changes = trajectory.lines.iter().filter_map(|line| match &line.record {
         Record::Activity(Activity::Answer(answer)) => Some(answer.changes),
         _ => None,
     });
-    assert_eq!(changes.collect::<Vec<_>>(), [0], "what was refused was no answer");
+    assert_eq!(changes.collect::<Vec<_>>(), [0], "a rejected line is not an answer");
     for (label, lines) in [
         ("P02", "yes\nskip\nwithdraw\nno\nwithdraw\nwithdraw\n"),
         ("P03", "withdraw\nno\nwithdraw\nwithdraw\n"),
@@ -231,14 +231,14 @@ fn in_a_study_nothing_else_opens_without_the_code() {
         with(&[&["--code", "guess"], command].concat()).fails(2, &["experimenter's code"]);
     }
     assert_eq!(with(&["--code", "open sesame", "runs"]).code, 0);
-    // Each word that was not the code is a line, without the word.
+    // Each wrong code is recorded as a line, without the code.
     let list = fs::read_to_string(lab.0.runs().join("visits.jsonl")).expect("a list");
     assert_eq!(
         (lab.events(), list.contains("guess")),
         (vec![(String::new(), VisitEvent::CodeRefused); 4], false)
     );
     with(&["play", "--plain", "--seed", "3"]).fails(2, &["protocol"]);
-    // Whoever began under one protocol does not go on under another.
+    // A participant who started under one protocol cannot continue under another.
     lab.visit("P1\nyes\n3\nquit\n");
     lab.edit("advice = false", "advice = true ");
     assert!(lab.visit("P1\n").out.contains("the study was changed since P1 began"));
@@ -255,13 +255,13 @@ fn a_practice_shows_no_results_to_any_command_without_the_code() {
     assert!(begun.out.contains("week 1 done"), "{}", begun.out);
     let practice = id(&lab.only_run("P1"));
     let as_participant = |command: &[&str]| lab.0.run(&[command, &[&practice, "--as", "P1"]].concat());
-    as_participant(&["play", "--plain", "--run"]).fails(2, &["novamind --study DIR` goes on with it"]);
-    as_participant(&["report"]).fails(2, &["shows no results of it"]);
-    // The other three weeks end it, and the session begins.
+    as_participant(&["play", "--plain", "--run"]).fails(2, &["continue it with `novamind --study DIR`"]);
+    as_participant(&["report"]).fails(2, &["hides its results"]);
+    // The other three weeks end it, and the session starts.
     let over = lab.visit("P1\nnext \"b\" naive\nnext \"c\" naive\nnext \"d\" naive\nquit\n");
     assert!(over.out.contains("Before you begin"), "{}", over.out);
     for command in [&["play", "--plain", "--run"][..], &["report"], &["report", "--session"], &["pictures"]] {
-        as_participant(command).fails(2, &["shows no results of it"]);
+        as_participant(command).fails(2, &["hides its results"]);
     }
     let with_code = ["--study", &lab.folder(), "--code", "open sesame", "report", &practice, "--as", "P1"];
     let report = lab.0.run(&with_code);
@@ -293,7 +293,7 @@ fn wrong_protocols_are_named_with_line_and_key() {
     assert!(checked.out.contains("digest") && checked.out.contains("ok    clock"), "{}", checked.out);
     lab.assign();
     lab.0.run(&["study", "assign", &lab.folder(), "--participants", "3"]).fails(1, &["exists"]);
-    lab.0.run(&["study", "new", &lab.folder()]).fails(1, &["a study already"]);
+    lab.0.run(&["study", "new", &lab.folder()]).fails(1, &["already a study"]);
 }
 
 #[test]
@@ -308,7 +308,7 @@ fn an_experimenter_watches_and_notes() {
     assert_eq!(watch(&["--note", "P01", "asked what a lead is"]).code, 0);
     watch(&["--note", "P 01", "no label"]).fails(2, &["participant label"]);
     assert!(watch(&["--once"]).out.contains("P01: asked what a lead is"));
-    // Somebody plays, and then the program is killed.
+    // A participant plays, and the program is killed.
     let mut child = lab.0.program().args(["--study", &lab.folder()]).spawn().expect("it starts");
     use std::io::Write;
     child.stdin.as_mut().expect("a pipe").write_all(b"P03\nyes\n3\nset_prices A=3\n").expect("written");
@@ -372,11 +372,11 @@ fn the_end_shows_what_the_protocol_says_and_no_more() {
             visit(&format!("{label}\nyes\n5\n{WEEKS}4\n2\nquit\n"));
             let end = visit(&format!("{label}\nnext \"e\" naive\n"));
             assert_eq!(end.code, 0, "{}", end.err);
-            // The beginning of the sitting shows the company as it stood: only what the last week brought counts.
+            // The start of the session shows the company as of the last week.
             let (_, after) = match json {
                 true => end.out.split_once('\n').expect("the greeting"),
-                false if shows => end.out.split_at(end.out.find("run ended").expect("the end is told")),
-                false => end.out.split_at(end.out.find("the run is over").expect("the end is told")),
+                false if shows => end.out.split_at(end.out.find("run ended").expect("the end is reported")),
+                false => end.out.split_at(end.out.find("the run is over").expect("the end is reported")),
             };
             let told = after.contains("horizon") && (json || after.contains("score"));
             assert_eq!(told, shows, "{results}:\n{after}");
@@ -386,7 +386,7 @@ fn the_end_shows_what_the_protocol_says_and_no_more() {
                 assert_eq!(told, [false; 5], "{after}");
                 assert!(!end.out.contains("day 35 ·") || json, "{}", end.out);
             }
-            // Who comes back to the questions is not shown it either.
+            // A participant who returns to the questions does not see it either.
             let again = visit(&format!("{label}\n"));
             assert_eq!(again.out.contains('$'), shows, "{results}:\n{}", again.out);
         }
@@ -428,7 +428,7 @@ fn the_keys_of_a_study_seal_snapshots_and_sign_archives() {
     fs::write(folder.join("seal.key"), damaged).expect("written");
     assert_eq!(lab.visit("P01\nquit\n").code, 0);
     assert_eq!(sealed_by(), b's');
-    // From the folder of the study every export is signed, and so is what is collected.
+    // In the folder of the study every export and collection is signed.
     let out = lab.0.0.path().join("p01.tar.gz").display().to_string();
     let export = |file: &str, place: &std::path::Path| {
         said(lab.0.program().current_dir(place).args(["runs", "export", &id(&run), "--out", file]), "")
@@ -452,7 +452,7 @@ fn the_keys_of_a_study_seal_snapshots_and_sign_archives() {
     assert_eq!(export(&bare, lab.0.0.path()).code, 0);
     let noted = collect(&[&bare], "data-2");
     assert!(noted.code == 1 && noted.out.contains("not signed: "), "{}", noted.out);
-    // The audit asks for the signatures of archives in the folders that it is given.
+    // The audit checks the signatures of archives in the given folders.
     let of_folder = |name: &str| {
         let place = lab.0.0.path().join(name).display().to_string();
         lab.0.run(&["study", "audit", &lab.folder(), &place])
@@ -464,5 +464,5 @@ fn the_keys_of_a_study_seal_snapshots_and_sign_archives() {
     let loose = of_folder("loose");
     assert!(loose.code == 1 && loose.out.contains("archive not signed"), "{}", loose.out);
     let audited = lab.0.run(&["study", "audit", &lab.folder()]);
-    assert!(audited.out.contains("Nothing was found"), "{}", audited.out);
+    assert!(audited.out.contains("No findings"), "{}", audited.out);
 }

@@ -23,7 +23,7 @@ set_daily_spend operations=120
 next "help" naive
 "#;
 
-/// A run that was played in plain mode, with its last hash.
+/// Plays a run in plain mode; returns its id and last hash.
 fn played(home: &Home) -> (String, String) {
     played_with(home, &["--seed", "11", "--days", "28", "--participant", "P01"])
 }
@@ -118,7 +118,7 @@ fn a_trajectory_holds_what_was_called_and_answered_and_nothing_that_was_not_told
     };
     let prices: Vec<bool> = named("set_prices").iter().map(|answer| answer["success"] == true).collect();
     assert_eq!(prices, [true, false]);
-    // Rows are not in the record: they are those of the moment at which they were asked for.
+    // Rows are not in the record; the export queries them as of that moment.
     assert_eq!(named("query")[0]["rows"][0]["cash"].as_f64(), Some(1e6));
     assert_eq!(named("query")[1]["code"], "sql_error");
     let weeks = named("next_week");
@@ -142,7 +142,7 @@ fn every_export_has_the_calls_of_unknown_tools() {
     let refused = |line: &Value| line["kind"] == "call" && line["ok"] == false;
     let calls: Vec<Value> =
         text.lines().map(|line| serde_json::from_str(line).expect("JSON")).filter(refused).collect();
-    // A word without arguments of a call is a typing error.
+    // A word without arguments is a typing error, not a call.
     assert_eq!(calls.len(), 1, "{calls:?}");
     assert_eq!((&calls[0]["tool"], &calls[0]["args"]), (&json!("set_wages"), &json!({ "sales": 3 })));
     assert_eq!(calls[0]["refusal"]["code"], "unknown_tool");
@@ -182,7 +182,7 @@ fn evaluation_log_has_a_sample_with_every_message() {
     assert_eq!((roles("system"), roles("user")), (1, 1));
     let called = messages.iter().filter(|message| message["tool_calls"].is_array()).count();
     assert!(called > 8 && roles("tool") == called, "{called}");
-    // Tables of messages are made of the events of the model: each message is in one of them.
+    // Message tables are built from the model events: each message is in one of them.
     let events = sample["events"].as_array().expect("events");
     let of_model = events.iter().filter(|event| event["event"] == "model");
     let of_events: Vec<&Value> = of_model
@@ -201,7 +201,7 @@ fn evaluation_log_has_a_sample_with_every_message() {
     assert!(ids.len() == messages.len() && ids.iter().all(|id| id.starts_with(&run)), "{ids:?}");
 }
 
-/// What `runs show` prints of an unfinished, an abandoned, a finished and a bankrupt run, and their logs in a folder for Inspect.
+/// Returns what `runs show` prints of an unfinished, an abandoned, a finished and a bankrupt run, and their logs for Inspect.
 fn shown_and_logged(home: &Home) -> Vec<(Value, Value)> {
     played(home);
     assert_eq!(home.play(&["--seed", "12", "--days", "28"], "next naive\n").code, 0);
@@ -271,7 +271,7 @@ fn evaluation_log_becomes_a_run_in_the_same_state() {
     assert!(said.out.contains(&hash), "{}", said.out);
 }
 
-/// `tests/data/inspect.eval` was written by Inspect 0.3.285: four calls of this program's tools, one of which was refused, and one of
+/// `tests/data/inspect.eval` was written by Inspect 0.3.285: four calls of tools of this program, one of which was rejected, and one of
 /// another tool.
 #[test]
 fn archive_of_inspect_is_imported() {
@@ -311,15 +311,17 @@ fn a_trajectory_becomes_a_run_in_the_same_state() {
         "{manifest}"
     );
     assert_eq!(other.run(&["replay", "latest", "--verify"]).code, 0);
-    // Another world answers otherwise, and says so.
+    // Another world answers differently, and the import reports it.
     let said = other.run(&["runs", "import", "--transcript", &file.to_string_lossy(), "--seed", "12"]);
-    said.fails(1, &["ended in another state"]);
+    said.fails(1, &["the final state differs"]);
     let lines = other.0.path().join("calls.jsonl");
     fs::write(&lines, "{\"tool\": \"set_prices\", \"args\": {\"A\": 12}, \"success\": false}\n")
         .expect("a file");
     let lines = lines.to_string_lossy().into_owned();
     other.run(&["runs", "import", "--transcript", &lines]).fails(2, &["--seed"]);
-    other.run(&["runs", "import", "--transcript", &lines, "--seed", "3"]).fails(1, &["answered otherwise"]);
+    other
+        .run(&["runs", "import", "--transcript", &lines, "--seed", "3"])
+        .fails(1, &["differs from the transcript"]);
     other.run(&["runs", "import", "--transcript", "nothing.json"]).fails(1, &["nothing.json"]);
     other.run(&["runs", "import", "--seed", "3", "run.nmrun"]).fails(2, &["--transcript"]);
 }
@@ -355,7 +357,7 @@ fn weeks_of_a_replay_are_recorded_for_terminal_players() {
     let [first, last] =
         ["day 7", "day 21"].map(|part| at(part).unwrap_or_else(|| panic!("{part}: {seen:#?}")));
     assert!(first < last && last + 3 >= seen.len(), "{first} {last} of {}", seen.len());
-    home.run(&["replay", &run, "--cast", &file, "--week", "9"]).fails(2, &["week 9 is not recorded"]);
+    home.run(&["replay", &run, "--cast", &file, "--week", "9"]).fails(2, &["week 9 is not in the record"]);
     let said = home.run(&["replay", &run, "--cast", &file, "--week", "3..2"]);
     assert!(said.code == 2 && said.err.contains("20..24"), "{}", said.err);
     home.run(&["replay", &run, "--cast", "/nowhere/talk.cast"]).fails(1, &["/nowhere/talk.cast"]);

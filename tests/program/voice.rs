@@ -1,17 +1,17 @@
-//! A language model as voice, at the command line: where nobody answers the game goes on, and the run says what it is.
+//! A language model as voice on the command line: without answers the game continues, and the run records the model.
 
 use std::net::TcpListener;
 
 use crate::support::home::{Home, id};
 
-/// A file that names a model at an address.
+/// Writes a settings file for a model at an address.
 fn named(home: &Home, endpoint: &str, more: &str) -> String {
     let text = format!("endpoint = \"{endpoint}\"\nmodel = \"llama3\"\nseconds_a_week = 1\n{more}");
     home.write("voice.toml", text);
     home.0.path().join("configuration/voice.toml").display().to_string()
 }
 
-/// An address of this machine where nobody listens.
+/// Returns an address of this machine without a server.
 fn nobody() -> String {
     let port =
         TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr()).expect("a port").port();

@@ -1,7 +1,7 @@
 #!/bin/sh
-# What Python packages say of what the program serves and exports: atif and inspect-ai read eleven runs, whose scripts lead to
-# their states, mcp lists and calls every tool. Makes a virtual environment in target/python. Where Python or the packages
-# cannot be had it says so and ends well; with --required it fails then.
+# Checks exports and interfaces with Python packages: atif and inspect-ai read eleven runs, exported scripts lead to the same states, and
+# mcp lists and calls every tool. Uses a virtual environment in target/python. Without Python or the packages, the script reports it and
+# succeeds; with --required it fails.
 set -eu
 cd "$(dirname "$0")/../.."
 program=${NOVAMIND:-target/debug/novamind}
@@ -14,7 +14,7 @@ skip() {
 required=no
 [ "${1:-}" = "--required" ] && required=yes
 command -v python3 >/dev/null || skip "python3 is not installed"
-[ -x "$environment/bin/python" ] || python3 -m venv "$environment" >/dev/null 2>&1 || skip "python3 makes no virtual environment"
+[ -x "$environment/bin/python" ] || python3 -m venv "$environment" >/dev/null 2>&1 || skip "python3 cannot create a virtual environment"
 "$environment/bin/pip" install --quiet --disable-pip-version-check 'atif==1.8.*' 'inspect-ai>=0.3.200' 'mcp>=1.9' pandas pyarrow \
     >/dev/null 2>&1 || skip "the packages atif, inspect-ai and mcp cannot be installed"
 [ -x "$program" ] || cargo build --quiet

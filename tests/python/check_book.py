@@ -1,4 +1,4 @@
-"""Checks that every link of the built book leads to a page and an anchor. Usage: check_book.py DIR"""
+"""Checks that every link in the built book has an existing page and anchor as its target. Usage: check_book.py DIR"""
 import html.parser
 import pathlib
 import sys

@@ -1,5 +1,5 @@
-"""Eleven runs, of policies and of plain mode, as trajectories that atif validates and as logs that Inspect's own tools list, read
-and tabulate; an archive that Inspect writes of one of them is imported."""
+"""Exports eleven runs of policies and of plain mode. atif validates the trajectories, and Inspect's own tools list, read and tabulate the
+logs. An archive that Inspect writes from one of them is imported."""
 import json
 import os
 import subprocess
@@ -28,7 +28,7 @@ def novamind(*arguments, text=None, runs=None):
 
 
 def score_by_the_rules(shown):
-    """Cash of the last day, 0 after a bankruptcy, none for an unfinished run."""
+    """Returns the cash of the last day, 0 after a bankruptcy, or None for an unfinished run."""
     return {None: None, "horizon": shown["cash"], "bankruptcy": 0}[shown["ended"]]
 
 
@@ -41,7 +41,7 @@ def check_trajectory(run, file, log):
 
 
 def check_tables(logs, runs):
-    """What Inspect's tables say of a folder of logs."""
+    """Checks Inspect's tables of a folder of logs."""
     listed = list_eval_logs(logs, filter=lambda header: header.eval.task == "novamind")
     assert sorted(own.task_id for own in listed) == sorted(runs), listed
     evals = evals_df(logs, quiet=True).set_index("task_id")
@@ -58,7 +58,7 @@ def check_tables(logs, runs):
 
 
 def check_import(log, state, work):
-    """Inspect's own archive of a log becomes a run in the same state."""
+    """Checks that Inspect's own archive of a log is imported as a run in the same state."""
     archive = os.path.join(work, "log.eval")
     write_eval_log(log, archive)
     said = novamind("runs", "import", "--transcript", archive, runs=os.path.join(work, "imported"))

@@ -1,4 +1,4 @@
-"""The client of the official package lists and calls every tool, and reads every resource."""
+"""Lists and calls every tool and reads every resource with the client of the official package."""
 import asyncio
 import json
 import os
@@ -18,7 +18,7 @@ async def main():
         await session.initialize()
         tools = (await session.list_tools()).tools
         accepted = 0
-        # The week last: what is called before it belongs to it.
+        # The week comes last, because earlier calls belong to it.
         for tool in sorted(tools, key=lambda tool: tool.name == "next_week"):
             answer = await session.call_tool(tool.name, documents[tool.name]["example"])
             assert answer.content, tool.name

@@ -1,4 +1,4 @@
-"""The scripts of eleven runs, played on new runs: in plain mode, and over the Python client. Both end in the state that they name."""
+"""Plays the scripts of eleven runs on new runs: in plain mode and with the Python client. Both must end in the state that they name."""
 import json
 import os
 import re
@@ -29,7 +29,7 @@ def only_run(runs):
 
 
 def in_plain_mode(script, runs):
-    """Plays `play.txt` as its second line says."""
+    """Plays `play.txt` with the command in its second line."""
     with open(script, encoding="utf-8") as file:
         text = file.read()
     options = re.search(r"^# novamind play (.*) < THIS FILE$", text, re.MULTILINE).group(1)
@@ -38,7 +38,7 @@ def in_plain_mode(script, runs):
 
 
 def over_the_client(script, runs, client):
-    """Plays `play.py` as its first lines say, on any free port."""
+    """Plays `play.py` with the command in its first lines, on any free port."""
     with open(script, encoding="utf-8") as file:
         options = re.search(r"^ *novamind serve (--new .*) --port \d+$", file.read(), re.MULTILINE).group(1)
     server = subprocess.Popen(

@@ -1,4 +1,4 @@
-"""Values of SQLite's own mathematical functions over a grid, as tests/data/mathematics.csv: expression, type, value."""
+"""Prints values of SQLite's mathematical functions over a grid in the form of tests/data/mathematics.csv: expression, type, value."""
 import csv, sqlite3, sys
 ROUND = ["ceil", "ceiling", "floor", "trunc"]
 ONE = ROUND + ["acos","acosh","asin","asinh","atan","atanh","cos","cosh","degrees","exp","ln","log","log10","log2","radians","sin","sinh","sqrt","tan","tanh"]

@@ -1,4 +1,4 @@
-"""Computes the measures of docs/studies/measures.md once more and compares them with the tables of an export.
+"""Recomputes the measures of docs/studies/measures.md and compares them with the tables of an export.
 
 It shares no code with the program: it reads trajectory.jsonl, afterwards.jsonl and world.db out of the archives that
 `novamind runs export --all --out FOLDER` or `novamind study collect` leaves, and the hidden yields from configs/world.
@@ -65,7 +65,7 @@ def week_of(day):
 
 
 class Time:
-    """What every moment of a run was, by the rules of docs/formats/trajectory.md#time."""
+    """Classifies every moment of a run by the rules of docs/formats/trajectory.md#time."""
 
     def __init__(self, lines):
         self.set_back = 0
@@ -83,7 +83,7 @@ class Time:
                 where += passed
             self.place.append(where)
             self.follow(state, line, idle, where)
-        # Whoever was found idle had been so since the last key.
+        # An idle user has been idle since the last key.
         for since, found in idle:
             cut = []
             for start, end, kind in self.pieces:
@@ -144,7 +144,7 @@ class Time:
         return spent
 
     def breaks(self):
-        """Ends of the times of more than ten minutes in which nobody played."""
+        """Returns the ends of gaps of more than ten minutes without play."""
         apart = []
         for start, end, kind in self.pieces:
             if kind in ("active", "answering", "simulating") or start == end:
@@ -175,7 +175,7 @@ IN_CONSOLE = ("dialogs_confirmed", "dialogs_cancelled", "drafts_left", "typed_ch
 
 
 def count(lines, told):
-    """Counts of lines; `told` are the interfaces of the run's sittings."""
+    """Counts lines. `told` are the interfaces of the run's sessions."""
     counts = count_all(lines)
     if "console" not in told:
         counts |= {name: "" for name in IN_CONSOLE + (("views",) if told else ())}
@@ -238,7 +238,7 @@ class Run:
         self.split()
 
     def split(self):
-        """Weeks, and where each begins and ends on the axis of time."""
+        """Returns the weeks with their start and end times."""
         self.copied = max((at for at, line in enumerate(self.lines) if line["kind"] == "branch"), default=0)
         self.weeks, self.open = [], Week(0)
         for at, line in enumerate(self.lines):
@@ -344,7 +344,7 @@ class Run:
         return any(line["kind"] == "limit" and line["event"] == "filed_naively" for line in lines)
 
     def rationales(self):
-        """Those that somebody wrote."""
+        """Returns the texts that a person wrote."""
         for week in self.weeks + [self.open]:
             if not self.at_limit(week.lines if week.closing else self.lines[week.first :]):
                 filed = [line for line in (week.lines if week.closing else self.lines[week.first :]) if line["kind"] == "advance"]
@@ -442,7 +442,7 @@ class Run:
             yield row
 
     def line_rows(self):
-        """What every table of lines says of a line's place."""
+        """Returns the columns for the position of a line, which every table of lines has."""
         began = nanoseconds(self.start["at"])
         for afterwards, lines in enumerate((self.lines, self.after)):
             for line in lines:
@@ -525,11 +525,11 @@ def pairs(screens):
     return ";".join(f"{name}={number(seconds(screens[name]))}" for name in sorted(screens))
 
 
-# Comparing.
+# Comparison.
 
 
 def harmless(text):
-    """A text as cells hold it."""
+    """Formats a text as in table cells."""
     acts = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff]")
     text = acts.sub(lambda found: "\\u{%x}" % ord(found.group()), text)
     bare = text

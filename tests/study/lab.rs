@@ -175,6 +175,6 @@ impl Lab {
         let study = self.study().display().to_string();
         let said = self.about_machines(&["study", "audit", &study], &[]);
         assert_eq!(said.code, 0, "{}{}", said.out, said.err);
-        assert!(said.out.contains("Nothing was found."), "{}", said.out);
+        assert!(said.out.contains("No findings."), "{}", said.out);
     }
 }

@@ -113,7 +113,7 @@ impl<'a> Plain<'a> {
         std::thread::sleep(std::time::Duration::from_millis(300));
         let least = u64::try_from(inner.elapsed().as_millis()).unwrap_or(u64::MAX);
         self.say("resume");
-        self.wait_for("the clock runs again");
+        self.wait_for("the clock is running");
         self.note("clock", "stopped", "");
         self.note("clock", "started", "");
         self.diary.between(Spent::Paused, least, ms(before));

@@ -1,4 +1,4 @@
-//! A company that is run through the library: calls, weeks, and what its database says.
+//! A company that is run through the library: calls, weeks, and queries.
 
 use std::path::Path;
 
@@ -9,14 +9,14 @@ use novamind::record::trajectory::record::Via;
 use novamind::session::{NewRun, Session, Storage, Week};
 use serde_json::{Value, json};
 
-/// Calls a tool that has to accept.
+/// Calls a tool that must accept.
 #[track_caller]
 pub fn call(session: &mut Session, tool: &str, arguments: Value) -> Value {
     let answer = session.call(tool, &arguments, Via::Script);
     answer.unwrap_or_else(|refusal| panic!("{tool}: {refusal}")).to_json()
 }
 
-/// Begins a run of seed 7 and of so many days in a folder of runs.
+/// Creates a run with seed 7 and this number of days in a folder of runs.
 #[track_caller]
 pub fn begin_run(runs: &Path, mode: Mode, days: u32) -> Session {
     let new = NewRun {
@@ -30,14 +30,14 @@ pub fn begin_run(runs: &Path, mode: Mode, days: u32) -> Session {
     Session::create(new, &Configuration::shipped()).expect("the run begins")
 }
 
-/// Opens shop as a sensible beginner would.
+/// Makes the first decisions of a sensible beginner.
 pub fn open_shop(session: &mut Session) {
     for (tool, arguments) in opening() {
         call(session, tool, arguments);
     }
 }
 
-/// The calls that open shop.
+/// Returns the calls of [`open_shop`].
 pub fn opening() -> [(&'static str, Value); 6] {
     [
         ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
@@ -52,14 +52,14 @@ pub fn opening() -> [(&'static str, Value); 6] {
     ]
 }
 
-/// Lets a week pass with the naive forecasts.
+/// Runs a week with naive forecasts.
 #[track_caller]
 pub fn week(session: &mut Session) -> Week {
     let forecasts = session.company().naive_forecasts();
     session.advance("if leads hold, grow", &forecasts, Via::Script, &mut |_| {}).expect("a week")
 }
 
-/// Lets some weeks pass.
+/// Runs some weeks.
 #[track_caller]
 pub fn weeks(session: &mut Session, count: usize) {
     for _ in 0..count {
@@ -67,13 +67,13 @@ pub fn weeks(session: &mut Session, count: usize) {
     }
 }
 
-/// Rows of a statement, as many as a query may return.
+/// Returns the rows of a statement, as many as a query may return.
 #[track_caller]
 pub fn rows(session: &mut Session, sql: &str) -> Vec<Vec<Cell>> {
     session.query(sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows
 }
 
-/// The same as numbers.
+/// Returns the rows of a statement as numbers.
 #[track_caller]
 pub fn numbers(session: &mut Session, sql: &str) -> Vec<Vec<f64>> {
     let number = |cell: &Cell| match cell {
@@ -84,19 +84,19 @@ pub fn numbers(session: &mut Session, sql: &str) -> Vec<Vec<f64>> {
     rows(session, sql).iter().map(|row| row.iter().map(number).collect()).collect()
 }
 
-/// The first column of a statement as numbers.
+/// Returns the first column of a statement as numbers.
 #[track_caller]
 pub fn column(session: &mut Session, sql: &str) -> Vec<f64> {
     numbers(session, sql).iter().map(|row| row[0]).collect()
 }
 
-/// The first cell of a statement as a number.
+/// Returns the first cell of a statement as a number.
 #[track_caller]
 pub fn number(session: &mut Session, sql: &str) -> f64 {
     column(session, sql)[0]
 }
 
-/// The first cell of a statement as a text.
+/// Returns the first cell of a statement as a text.
 #[track_caller]
 pub fn text(session: &mut Session, sql: &str) -> String {
     match &rows(session, sql)[0][0] {

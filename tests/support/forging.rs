@@ -1,11 +1,11 @@
-//! Trajectories that were changed by somebody who knows how they are chained.
+//! Trajectories with deliberately forged chains.
 
 use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
 
-/// Changes lines and forges sums and chain anew, as twenty lines of a script can.
+/// Changes lines and recomputes checksums and chain.
 pub fn forge(folder: &Path, change: impl Fn(usize, &mut Value)) {
     let path = folder.join("trajectory.jsonl");
     let text = fs::read_to_string(&path).expect("a trajectory");

@@ -1,4 +1,4 @@
-//! A person's folders, and the program that works in them.
+//! The folders of a user, and the program that works in them.
 
 use std::fs;
 use std::io::Write;
@@ -8,10 +8,10 @@ use std::process::{Command, Output, Stdio};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A person's folders: runs and configuration.
+/// The folders of a user: runs and configuration.
 pub struct Home(pub TempDir);
 
-/// What a program said, and its exit code.
+/// The output of a program and its exit code.
 pub struct Said {
     pub out: String,
     pub err: String,
@@ -55,7 +55,7 @@ impl Home {
         said(self.program().args(["play", "--plain"]).args(options), lines)
     }
 
-    /// A run of two weeks, left behind; its folder.
+    /// Plays a run of two weeks and closes it; returns its folder.
     pub fn two_weeks(&self) -> PathBuf {
         let lines = "set_prices A=12\nset_prices B=20\nnext naive\nset_prices C=50\nnext naive\n";
         assert_eq!(self.play(&["--days", "28"], lines).code, 0);
@@ -80,7 +80,7 @@ pub fn said(command: &mut Command, lines: &str) -> Said {
 }
 
 impl Said {
-    /// It ended with this code and said all of this on standard error, in one line.
+    /// Checks the exit code, and that standard error is one line with all of these parts.
     #[track_caller]
     pub fn fails(&self, code: i32, parts: &[&str]) {
         assert_eq!(self.code, code, "{}{}", self.out, self.err);

@@ -1,4 +1,4 @@
-//! Lessons of a test: a plan in a folder, and how its first part goes.
+//! Lessons of a test: a plan in a folder, and its first part.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use novamind::record::trajectory::record::Via;
 use novamind::session::{LessonEntry, NewRun, Session, Storage};
 use novamind::tools::Refusal;
 
-/// The lesson of a plan, in a file of that name.
+/// Reads a lesson from a plan, which is written to a file of that name.
 pub fn lesson_of(folder: &Path, name: &str, plan: &str) -> Result<Lesson, String> {
     let path = folder.join(format!("{name}.toml"));
     std::fs::write(&path, plan).expect("a file");
@@ -18,7 +18,7 @@ pub fn lesson_of(folder: &Path, name: &str, plan: &str) -> Result<Lesson, String
     Lesson::of_file(&path).map_err(|error| error.to_string())
 }
 
-/// The first part of it, begun.
+/// Starts the first part of the lesson.
 pub fn begin(folder: &Path, name: &str, plan: &str) -> Session {
     let lesson = Arc::new(lesson_of(folder, name, plan).expect("a lesson"));
     let new = NewRun {
@@ -30,13 +30,13 @@ pub fn begin(folder: &Path, name: &str, plan: &str) -> Session {
     Session::create(new, &Configuration::shipped()).expect("the lesson begins")
 }
 
-/// A week without a rationale, with naive forecasts.
+/// Runs a week without a rationale, with naive forecasts.
 pub fn week(session: &mut Session) -> Result<(), Refusal> {
     let forecasts = session.company().naive_forecasts();
     session.advance("", &forecasts, Via::Plain, &mut |_| {}).map(|_| ())
 }
 
-/// The code of a refusal, or that there was none.
+/// Returns the code of a rejection.
 pub fn code(result: Result<impl Sized, Refusal>) -> &'static str {
     result.err().map_or("accepted", |refusal| refusal.code)
 }

@@ -1,4 +1,4 @@
-//! What several stories use: a company run through the library, the built program in a home of its own, dice.
+//! Shared test support: a company run through the library, the built program in its own home, random numbers.
 #![allow(dead_code, reason = "each group of stories uses its part")]
 
 pub mod company;

@@ -1,9 +1,9 @@
-//! The measures, computed once more by a script that shares no code with the program.
+//! The measures, recomputed by a script that shares no code with the program.
 
 use std::path::Path;
 use std::process::Command;
 
-/// What the script says of an export, and its exit code; none on a machine without Python 3.11.
+/// Returns the output and the exit code of the script for an export; `None` on a machine without Python 3.11.
 pub fn recompute(tables: &Path) -> Option<(String, Option<i32>)> {
     let fits = Command::new("python3").args(["-c", "import tomllib"]).output();
     if !fits.is_ok_and(|done| done.status.success()) {

@@ -1,5 +1,5 @@
-//! Modules of a crate that import each other in a cycle. A module is a folder or a file directly below the folder of its
-//! crate. The file of the crate itself (`lib.rs`, `mod.rs`) is not a module: what it exports belongs to the module it is from.
+//! Modules of a crate that import each other in a cycle. A module is a folder or a file directly below the folder of its crate.
+//! The file of the crate itself (`lib.rs`, `mod.rs`) is not a module: its exports belong to the modules they come from.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use super::{files, root};
 
-/// Cycles of up to this many modules are allowed.
+/// Largest number of modules in an allowed cycle.
 const MAX_MODULES: usize = 3;
 
 #[test]
@@ -28,11 +28,11 @@ fn no_cycle_has_more_than_three_modules() {
 struct Unit {
     name: String,
     folder: PathBuf,
-    /// What follows `crate::` in the path of one of its modules.
+    /// The names after `crate::` in the paths of its modules.
     prefix: Vec<String>,
 }
 
-/// The root crate without the crates below it, and each folder of `src`.
+/// Returns the root crate without the crates below it, and each folder of `src`.
 fn units() -> Vec<Unit> {
     let sources = root().join("src");
     let entries = fs::read_dir(&sources).expect("the sources").map(|entry| entry.expect("an entry").path());
@@ -56,7 +56,7 @@ struct File {
 }
 
 impl Unit {
-    /// What each module imports of the others.
+    /// Returns the imports of each module from the others.
     fn imports(&self) -> BTreeMap<String, BTreeSet<String>> {
         let files = self.files();
         let modules: BTreeSet<&str> =
@@ -107,7 +107,7 @@ impl Unit {
         all
     }
 
-    /// The name directly below the crate to which a path in a module leads; `None` if it leads elsewhere.
+    /// Returns the name directly below the crate to which a path in a module leads; `None` if it leads elsewhere.
     fn first_name<'a>(&self, from: &[String], path: &'a [String]) -> Option<&'a String> {
         let up = path.iter().take_while(|name| *name == "super").count();
         let rest = if path.first()? == "crate" {
@@ -119,7 +119,7 @@ impl Unit {
     }
 }
 
-/// A text without comments and without what `#[cfg(test)]` stands before; the modules among that.
+/// Removes comments and items with `#[cfg(test)]` from a text. Also returns the removed modules.
 fn without_tests(text: &str) -> (String, Vec<String>) {
     let (mut kept, mut modules) = (String::new(), Vec::new());
     let mut lines = text.lines().filter(|line| !line.trim_start().starts_with("//"));
@@ -144,13 +144,13 @@ fn without_tests(text: &str) -> (String, Vec<String>) {
 /// A path in a text: `crate::figures::Week` by its names.
 struct Names {
     names: Vec<String>,
-    /// How others call it.
+    /// The exported name.
     exported: String,
     /// Whether it is in a `pub use`.
     is_export: bool,
 }
 
-/// Every path of a text, those of `use a::{b, c}` one by one.
+/// Returns every path of a text, those of `use a::{b, c}` separately.
 fn paths(text: &str) -> impl Iterator<Item = Names> {
     let mut all = Vec::new();
     let mut end = 0;
@@ -170,7 +170,7 @@ fn is_of_name(sign: char) -> bool {
     sign.is_alphanumeric() || sign == '_'
 }
 
-/// Reads one tree of paths; returns its length.
+/// Parses one tree of paths; returns its length.
 fn tree(text: &str, prefix: &[String], is_export: bool, all: &mut Vec<Names>) -> usize {
     let mut names = prefix.to_vec();
     let mut at = 0;
@@ -204,7 +204,7 @@ fn tree(text: &str, prefix: &[String], is_export: bool, all: &mut Vec<Names>) ->
     at
 }
 
-/// Modules that reach each other.
+/// Returns groups of modules that reach each other.
 fn cycles(imports: &BTreeMap<String, BTreeSet<String>>) -> Vec<Vec<String>> {
     let mut reach = imports.clone();
     loop {

@@ -1,7 +1,6 @@
-//! The documents: links lead somewhere, values are those of the parameters in force, and every parameter, test and file
-//! that is named is there.
+//! Documents: links have targets, values are those of the parameters, and every named parameter, test and file exists.
 //!
-//! `NOVAMIND_WRITE_DOCUMENTS=1 cargo test documents` writes the values and tables anew.
+//! `NOVAMIND_WRITE_DOCUMENTS=1 cargo test documents` writes the values and tables.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -11,7 +10,7 @@ use toml::{Table, Value};
 
 use super::{files, root};
 
-/// Tables of parameters that hold one entry per group, pair of groups or persona: pages show columns of them.
+/// Parameter tables with one entry per group, pair of groups or persona: pages show columns of them.
 const BY_GROUP: [&str; 3] = ["referral_leads_per_subscriber_day", "reputation_influence", "personas"];
 
 /// A Markdown file.
@@ -26,7 +25,7 @@ impl Page {
         Page { path, text }
     }
 
-    /// Lines with their numbers, without those of code blocks.
+    /// Returns the lines with their numbers, without code blocks.
     fn prose(&self) -> impl Iterator<Item = (usize, &str)> {
         let mut is_code = false;
         self.text.lines().enumerate().filter_map(move |(at, line)| {
@@ -41,14 +40,14 @@ impl Page {
         format!("{}:{line}: {what}", path.display())
     }
 
-    /// Names under which its headings can be linked to.
+    /// Returns the anchors of the headings.
     fn anchors(&self) -> BTreeSet<String> {
         let headings = self.prose().filter_map(|(_, line)| line.strip_prefix('#'));
         headings.map(|heading| slug(heading.trim_start_matches('#').trim())).collect()
     }
 }
 
-/// The name of a heading in a link.
+/// Returns the anchor of a heading.
 fn slug(heading: &str) -> String {
     let kept = heading.to_lowercase();
     let kept = kept.chars().filter(|sign| sign.is_alphanumeric() || " -_".contains(*sign));
@@ -63,18 +62,18 @@ fn pages() -> Vec<Page> {
     paths.into_iter().map(Page::read).collect()
 }
 
-/// What stands between two signs, each time they are there.
+/// Returns each text between two markers.
 fn between<'a>(line: &'a str, from: &'a str, to: &'a str) -> impl Iterator<Item = &'a str> {
     let parts = line.split(from).skip(1);
     parts.filter_map(move |part| part.split_once(to).map(|(inner, _)| inner))
 }
 
-/// Words in code marks: every second piece of a line.
+/// Returns the words in code marks: every second piece of a line.
 fn coded(line: &str) -> impl Iterator<Item = &str> {
     line.split('`').skip(1).step_by(2)
 }
 
-/// The cells of a row of a table; none for other lines.
+/// Returns the cells of a table row; `None` for other lines.
 fn cells(line: &str) -> Option<Vec<&str>> {
     let inner = line.trim().strip_prefix('|')?.strip_suffix('|')?;
     Some(inner.split('|').map(str::trim).collect())
@@ -84,7 +83,7 @@ fn is_rule(cells: &[&str]) -> bool {
     cells.iter().all(|cell| !cell.is_empty() && cell.chars().all(|sign| "-: ".contains(sign)))
 }
 
-/// The parameters in force, as the base files hold them.
+/// Returns the parameters of the base files.
 fn parameters() -> Table {
     let texts = files(&root().join("configs/world"), "toml");
     let tables = texts
@@ -93,7 +92,7 @@ fn parameters() -> Table {
     tables.flatten().collect()
 }
 
-/// How a value is written in a page.
+/// Formats a value as in a page.
 fn written(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
@@ -117,7 +116,7 @@ fn value_of<'a>(parameters: &'a Table, key: &str) -> Option<&'a Value> {
     (!value.is_table() || key.contains('.')).then_some(value)
 }
 
-/// A page as the parameters say: the second cell of a row that begins with a parameter, and what follows
+/// Returns a page with current values: the second cell of each row that begins with a parameter, and the tables after
 /// `<!-- table: list column … -->`.
 fn filled(page: &Page, parameters: &Table) -> Result<String, String> {
     let mut text = String::new();
@@ -147,7 +146,7 @@ fn filled(page: &Page, parameters: &Table) -> Result<String, String> {
     Ok(text)
 }
 
-/// Columns of a list of parameters, one entry in a row.
+/// Returns columns of a list of parameters, one row per entry.
 fn table(parameters: &Table, wanted: &str) -> Result<String, String> {
     let mut words = wanted.split_whitespace();
     let list = words.next().unwrap_or_default();
@@ -221,7 +220,7 @@ fn every_parameter_is_explained_on_one_page() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// How long lessons take is told in two documents and follows from the lessons.
+/// Two documents state the length of lessons.
 #[test]
 fn minutes_of_lessons_in_documents_are_those_of_the_lessons() {
     let minutes: Vec<i64> = files(&root().join("configs/lessons"), "toml")
@@ -263,7 +262,7 @@ fn links_lead_somewhere() {
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
 
-/// Whether a word is the path of something in the repository. Capitals stand for a name that the reader chooses.
+/// Returns whether a word is a path in the repository. Capitals are placeholders.
 fn is_path(word: &str) -> bool {
     let tops = ["src/", "tests/", "configs/", "assets/", "docs/"];
     if ["NAME", "MODULE", "PART"].iter().any(|stands_for| word.contains(stands_for)) {
@@ -299,7 +298,7 @@ fn files_that_documents_and_comments_name_are_there() {
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
 
-/// Whether a page of the documents, or one heading of it, is there.
+/// Returns whether a page of the documents, or a heading of it, exists.
 fn leads_to_a_heading(word: &str) -> bool {
     let (file, anchor) = word.split_once('#').unwrap_or((word, ""));
     let path = root().join(file);
@@ -344,7 +343,7 @@ fn check_values_in_documents_are_those_of_the_tests() {
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
 
-/// A function's text, from its name to the end of its block.
+/// Returns the text of a function, from its name to the end of its block.
 fn body<'a>(source: &'a str, name: &str) -> Option<&'a str> {
     let from = source.find(&format!("fn {name}("))?;
     let indent = source[..from].rfind('\n').map_or(0, |line| from - line - 1);
@@ -353,7 +352,7 @@ fn body<'a>(source: &'a str, name: &str) -> Option<&'a str> {
     Some(&rest[..rest.find(&end).unwrap_or(rest.len())])
 }
 
-/// Pages of the folder of mechanisms name their code.
+/// Pages of mechanisms link to their code.
 #[test]
 fn every_mechanism_names_its_code() {
     let folder: &Path = &root().join("docs/mechanics");
@@ -365,7 +364,7 @@ fn every_mechanism_names_its_code() {
     assert!(nameless.is_empty(), "{nameless:?}");
 }
 
-/// What explains the code is in the repository: nothing refers to numbered chapters of something else.
+/// Documents and comments only refer to what is in the repository, not to numbered chapters of other texts.
 #[test]
 fn nothing_refers_to_what_is_not_here() {
     let numbered = |line: &str| {

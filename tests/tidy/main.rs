@@ -1,5 +1,5 @@
-//! Rules of the source text: crates import what the architecture names, no cycle of more than three modules, nothing unfinished, no clock
-//! and no order of chance in the simulator, configuration that can be read.
+//! Rules for the sources: crates import what the architecture lists, no cycles of more than three modules, nothing unfinished, no clock and no
+//! random iteration order in the simulator, valid configuration.
 
 mod cycles;
 mod documents;
@@ -22,13 +22,13 @@ impl Source {
         Source { lines: lines[..tests.unwrap_or(lines.len())].to_vec(), path }
     }
 
-    /// Lines that are no comment, with their numbers.
+    /// Returns the lines that are not comments, with their numbers.
     fn code(&self) -> impl Iterator<Item = (usize, &str)> {
         let numbered = self.lines.iter().enumerate().map(|(at, line)| (at + 1, line.as_str()));
         numbered.filter(|(_, line)| !line.trim_start().starts_with("//"))
     }
 
-    /// First folder or file below `src`.
+    /// Returns the first folder or file below `src`.
     fn house(&self) -> String {
         let below = self.path.strip_prefix(root().join("src")).expect("below src");
         let first = below.components().next().expect("a name").as_os_str().to_string_lossy();
@@ -39,7 +39,7 @@ impl Source {
         self.path.file_name().is_some_and(|name| name == "tests.rs" || name == "test_kit.rs")
     }
 
-    /// Complains about every line of code that a rule forbids.
+    /// Returns a complaint for every line of code that a rule forbids.
     fn complaints(&self, forbidden: impl Fn(&str) -> Option<String>) -> Vec<String> {
         let complaint = |(number, line): (usize, &str)| {
             forbidden(line).map(|why| format!("{}:{number}: {why}", self.path.display()))
@@ -48,7 +48,7 @@ impl Source {
     }
 }
 
-/// The folder of the workspace, two above that of the package `base`. Cargo sets it when the test is built and when it runs.
+/// Returns the folder of the workspace, two above that of the package `base`. Cargo sets it when the test is built and run.
 fn root() -> PathBuf {
     let package =
         std::env::var_os("CARGO_MANIFEST_DIR").map_or(env!("CARGO_MANIFEST_DIR").into(), PathBuf::from);
@@ -99,7 +99,7 @@ fn build_script_watches_every_folder_that_is_compiled_in() {
     );
 }
 
-/// The compiler finds what nobody uses, but not what another package could.
+/// The compiler reports unused private items, but not public items that no other package uses.
 #[test]
 fn what_is_public_is_used() {
     let files = sources();
@@ -138,7 +138,7 @@ fn nothing_is_left_unfinished() {
     assert_none(&complaints);
 }
 
-/// The crates of the workspace with the crates that they depend on, from their manifests.
+/// Returns the crates of the workspace with their dependencies, from the manifests.
 fn dependencies() -> BTreeMap<String, Vec<String>> {
     let folders =
         fs::read_dir(root().join("src")).expect("the sources").map(|entry| entry.expect("an entry").path());
@@ -192,10 +192,10 @@ fn the_simulator_knows_no_clock_no_files_and_no_order_of_chance() {
     assert_none(&complaints);
 }
 
-/// Simulating recorded days shows hidden state. The crate that does it checks who may see the result.
+/// Re-simulation shows hidden state. The crate that does it checks who may see the result.
 #[test]
 fn only_insight_imports_the_engine_of_sessions() {
-    // The session, and crates that cannot import it.
+    // The session itself, and crates that cannot import it.
     const BELOW: [&str; 8] = ["assets", "base", "database", "record", "session", "tools", "voice", "world"];
     let complaint = |line: &str| {
         let listed = ["session::engine", "{engine", ", engine"].iter().any(|path| line.contains(path));

@@ -1,4 +1,4 @@
-//! `novamind agent batch`: a command plays fresh runs, one after the other, and what came of them is set side by side.
+//! `novamind agent batch`: runs an agent command on several new runs, one after the other, and compares the results.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -21,19 +21,18 @@ use crate::record::trajectory::Trajectory;
 use crate::server::write_client;
 use crate::session::Session;
 
-/// Options of `agent batch`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Command of the agent; a shell runs it in the folder of the try.
+    /// Command of the agent; a shell executes it in the folder of each try
     #[arg(long, value_name = "COMMAND")]
     command: String,
-    /// Fresh runs.
+    /// Number of new runs
     #[arg(long = "runs", default_value_t = 3, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     tries: u32,
-    /// Start the command again at most so often when it ends before the run does.
+    /// Maximum number of restarts if the command ends before the run does
     #[arg(long = "continue", default_value_t = 0, value_name = "N")]
     continued: u32,
-    /// Folder for a folder of each try and the results; it must be new or empty.
+    /// Folder for the results, with a subfolder for each try; must be new or empty
     #[arg(long, default_value = "batch", value_name = "DIR")]
     out: PathBuf,
     #[command(flatten)]
@@ -42,20 +41,19 @@ pub struct Options {
     output: OutputOptions,
 }
 
-/// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let out = std::path::absolute(&options.out).map_err(|error| cannot_write(&options.out, &error))?;
     let was_there = out.is_dir();
     std::fs::create_dir_all(&out).map_err(|error| cannot_write(&out, &error))?;
     if std::fs::read_dir(&out).map_err(|error| cannot_write(&out, &error))?.next().is_some() {
-        return Err(Failure::usage(format!("{} is not empty: name a new folder with --out", out.display())));
+        return Err(Failure::usage(format!("{} is not empty: give a new folder with --out", out.display())));
     }
     let stop = stopped_by_signals();
     let mut tries = Vec::new();
     for number in 1..=options.tries {
         let work = out.join(format!("try-{number}"));
         let own = AgentRun::begin(&options.made_of, context).inspect_err(|_| {
-            // A folder in which nothing has begun says nothing; one with tries in it stays.
+            // The output folder is removed if no try has started.
             if !was_there {
                 let _ = std::fs::remove_dir(&out);
             }
@@ -64,7 +62,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         write_client(&work.join("client"))?;
         eprintln!("try {number} of {}: run {} in {}", options.tries, own.id, work.display());
         let played = play(options, number, &own, &work, &stop);
-        // However it went, no server is left behind.
+        // The server must stop in any case.
         own.stop()?;
         let (attempts, exit_code) = played?;
         tries.push(outcome(number, &own, attempts, exit_code)?);
@@ -81,7 +79,7 @@ fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
     Failure::failed(format!("{}: {error}", path.display()))
 }
 
-/// Starts the command until the run is over or it was started often enough; how often, and its last exit code.
+/// Starts the command until the run is over or the restarts are used up. Returns the number of starts and the last exit code.
 fn play(
     options: &Options,
     number: u32,
@@ -105,15 +103,15 @@ fn play(
             .map_err(|error| cannot_write(&log, &error))?;
         command.stderr(file.try_clone().map_err(|error| cannot_write(&log, &error))?).stdout(file);
         let child =
-            command.spawn().map_err(|error| Failure::failed(format!("no shell can be started: {error}")))?;
+            command.spawn().map_err(|error| Failure::failed(format!("cannot start a shell: {error}")))?;
         let status = wait(child, stop)?;
-        // Whatever the program did to the server, another one goes on with the run.
+        // If the command stopped the server, another one continues the run.
         let reply = asked(&own.serve(Secrecy::Open)?, "/game-status", None)?;
         exit::check(&reply)?;
         if !reply.body["ended"].is_null() || attempts > options.continued {
             return Ok((attempts, status.code()));
         }
-        eprintln!("try {number}: the command ended on day {} and is started again", reply.body["day"]);
+        eprintln!("try {number}: the command ended on day {} and is restarted", reply.body["day"]);
     }
 }
 

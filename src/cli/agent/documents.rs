@@ -1,4 +1,4 @@
-//! `novamind agent docs`: what an agent is handed.
+//! `novamind agent docs`: the page and the documents that an agent receives.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use crate::server::{PageOf, page, write_documents};
 use crate::session::{Access, Session};
 use crate::tools::Numbers;
 
-/// Prints the page, or writes it with the documents; of the run that is named, else of a standard run.
+/// Prints the page or writes it with the documents, for the named run or for a standard run.
 pub fn write(named: Option<&str>, out: Option<&Path>, context: &Context) -> Result<(), Failure> {
     match named {
         Some(_) => of_run(&AgentRun::find(named, context)?, out),

@@ -1,34 +1,34 @@
-//! How an answer becomes an exit code.
+//! Exit codes for responses of the server.
 
 use serde_json::Value;
 
 use crate::cli::Failure;
 use crate::server::Reply;
 
-/// A call, a statement or a week was refused; nothing has changed.
+/// A call, a statement or a week was rejected; nothing changed.
 const REFUSED: u8 = 5;
-/// Refused, because the run is over.
+/// Rejected because the run is over.
 const OVER: u8 = 6;
-/// A week is being simulated, or the server has no room for another connection.
+/// A week is being simulated, or the server has too many connections.
 const BUSY: u8 = 7;
-/// The server does not answer.
+/// The server does not respond.
 const UNREACHABLE: u8 = 8;
 
-/// What a server that does not answer means.
+/// Returns the failure for a server that does not respond.
 pub fn unreachable(error: &str) -> Failure {
     Failure::with_code(
         UNREACHABLE,
         format!(
-            "the server does not answer: {error}. What was confirmed is kept; `novamind agent status` starts it again and \
-             says how far the run has come"
+            "the server does not respond: {error}. Everything confirmed is saved; `novamind agent status` restarts it and \
+             shows the day of the run"
         ),
     )
 }
 
-/// Passes what is no refusal.
+/// Returns an error if the response is a rejection.
 ///
 /// # Errors
-/// It is one; the message is the code, the argument at fault, and what is wrong.
+/// The response is a rejection. The message has the code, the argument and the reason.
 pub fn check(reply: &Reply) -> Result<(), Failure> {
     if reply.status == 200 && reply.body["success"] != Value::Bool(false) {
         return Ok(());

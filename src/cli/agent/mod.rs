@@ -1,4 +1,4 @@
-//! `novamind agent`: a run for programs that have nothing but a shell (docs/interfaces/agents.md).
+//! `novamind agent`: plays a run with single shell commands (docs/interfaces/agents.md).
 
 mod batch;
 mod documents;
@@ -18,77 +18,76 @@ use crate::server::{Remote, Reply};
 use server::{AgentRun, Secrecy};
 use words::{called_with, next_week_of, text_of};
 
-/// Options of `agent`.
 #[derive(Debug, Args)]
 pub struct Options {
     #[command(subcommand)]
     command: AgentCommand,
-    /// Run [default: the one that `agent new` began last].
+    /// Run [default: the one that `agent new` last created]
     #[arg(id = "agent_run", long = "run", global = true, env = "NOVAMIND_RUN", value_name = "ID")]
     run: Option<String>,
-    /// Id of the request, for `call` and `next-week`: the command can be repeated with it, and the request runs once.
+    /// Request id for `call` and `next-week`: repeating the command with the same id runs the request only once
     #[arg(long, global = true, value_name = "ID")]
     request_id: Option<String>,
 }
 
 #[derive(Debug, Subcommand)]
 enum AgentCommand {
-    /// Begin a run, and start its server.
+    /// Create a run and start its server
     New(NewRunOptions),
-    /// Day, cash, subscribers, last day, and how the run ended.
+    /// Show day, cash, subscribers, last day, and how the run ended
     Status,
-    /// The dashboard of the last week.
+    /// Show the dashboard of the last week
     Dashboard,
-    /// File rationale and forecasts, and let a week pass.
+    /// Submit a rationale and forecasts, and simulate a week
     #[command(allow_negative_numbers = true)]
     NextWeek {
-        /// One JSON object, - for one on standard input, or: RATIONALE and POINT LOWER UPPER of 1, 4, 12 and 26 weeks.
+        /// One JSON object, - to read it from standard input, or: RATIONALE and POINT LOWER UPPER for 1, 4, 12 and 26 weeks
         #[arg(required = true, value_name = "WORD")]
         words: Vec<String>,
-        /// Refuse the week unless the run is on this day.
+        /// Reject the week unless the run is on this day
         #[arg(long, value_name = "DAY")]
         expected_day: Option<u32>,
     },
-    /// Ask the database one statement.
+    /// Run one SQL statement
     Query {
-        /// Statement, or - for one on standard input.
+        /// Statement, or - to read it from standard input
         sql: String,
     },
-    /// Call a tool.
+    /// Call a tool
     Call {
-        /// Name of the tool; `novamind tools` lists them.
+        /// Name of the tool; `novamind tools` lists them
         tool: String,
-        /// One JSON object, - for one on standard input, or --KEY VALUE for each argument.
+        /// One JSON object, - to read it from standard input, or --KEY VALUE for each argument
         #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "JSON|--KEY VALUE")]
         arguments: Vec<String>,
     },
-    /// Run a Python program against the run, with the package `novamind` on its path.
+    /// Run a Python program with access to the run and with the package `novamind`
     Python {
-        /// What python3 is given: a file and its arguments, or -c CODE.
+        /// Arguments for python3: a file and its arguments, or -c CODE
         #[arg(required = true, trailing_var_arg = true, allow_hyphen_values = true, value_name = "FILE")]
         words: Vec<String>,
     },
-    /// Print the page that can be handed to an agent, or write it with the documentation of tools and tables.
+    /// Print the instructions for an agent, or write them with the documentation of tools and tables
     Docs {
-        /// Folder for AGENT.md, tools.md, tools.json, tables.md and tables.json.
+        /// Folder for AGENT.md, tools.md, tools.json, tables.md and tables.json
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
-    /// Stop the server of the run; what was confirmed is kept, and the next command starts another one.
+    /// Stop the server of the run; everything confirmed is saved, and the next command starts a new server
     Stop,
-    /// Let a command play several fresh runs, and collect what came of them.
+    /// Run an agent command on several new runs and collect the results
     Batch(batch::Options),
 }
 
 impl Options {
-    /// Gives `--code` to the tool that is called: without a study there is no code of one.
+    /// Passes `--code` to the called tool. Without a study it cannot be the code of an experimenter.
     pub fn take_code(&mut self, code: String) {
         if let AgentCommand::Call { arguments, .. } = &mut self.command {
             arguments.splice(0..0, ["--code".to_owned(), code]);
         }
     }
 
-    /// Adds the id of the request to its body.
+    /// Adds the request id to the body.
     fn with_id(&self, mut body: Value) -> Value {
         if let Some(id) = &self.request_id {
             body["request_id"] = json!(id);
@@ -97,7 +96,6 @@ impl Options {
     }
 }
 
-/// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let named = options.run.as_deref();
     match &options.command {
@@ -146,14 +144,14 @@ fn begin(new: &NewRunOptions, context: &Context) -> Result<(), Failure> {
     print(&format!("{told}\n"))
 }
 
-/// The run, and a server that plays it.
+/// Returns the run and a connection to its server, which is started if necessary.
 fn connect(named: Option<&str>, context: &Context) -> Result<(AgentRun, Remote), Failure> {
     let own = AgentRun::find(named, context)?;
     let remote = own.serve(Secrecy::Token)?;
     Ok((own, remote))
 }
 
-/// Asks, and prints what is answered.
+/// Sends a request and prints the response.
 fn answer(remote: &Remote, path: &str, body: Option<&Value>) -> Result<(), Failure> {
     let reply = asked(remote, path, body)?;
     exit::check(&reply)?;

@@ -1,4 +1,4 @@
-//! `novamind agent python`: a program in Python against the run.
+//! `novamind agent python`: runs a Python program that plays the run.
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -8,7 +8,7 @@ use super::server::AgentRun;
 use crate::cli::Failure;
 use crate::server::Remote;
 
-/// Runs python3 with these words; its exit code is passed on.
+/// Runs python3 and passes its exit code on.
 pub fn run(words: &[String], own: &AgentRun, remote: &Remote) -> Result<(), Failure> {
     let client = own.client()?;
     let mut command = Command::new("python3");
@@ -16,29 +16,29 @@ pub fn run(words: &[String], own: &AgentRun, remote: &Remote) -> Result<(), Fail
     equip(&mut command, own, remote, &client)?;
     let status = command.status().map_err(|error| match error.kind() {
         std::io::ErrorKind::NotFound => Failure::failed(
-            "python3 is not on the path of this machine: install Python 3.9 or newer, or use `novamind agent call`",
+            "python3 is not on the PATH: install Python 3.9 or newer, or use `novamind agent call`",
         ),
-        _ => Failure::failed(format!("python3 cannot be started: {error}")),
+        _ => Failure::failed(format!("cannot start python3: {error}")),
     })?;
     match status.code() {
         Some(0) => Ok(()),
         Some(code) => Err(Failure::code_only(u8::try_from(code).unwrap_or(1))),
-        None => Err(Failure::failed("python3 was ended by a signal")),
+        None => Err(Failure::failed("a signal ended python3")),
     }
 }
 
-/// Gives a command what it needs to play the run: port, token, name of the run, and the package.
+/// Sets the environment that a program needs to play the run: port, token, run id and Python package.
 pub fn equip(command: &mut Command, own: &AgentRun, remote: &Remote, client: &Path) -> Result<(), Failure> {
     let mut path = vec![client.to_owned()];
     if let Some(others) = std::env::var_os("PYTHONPATH") {
         path.extend(std::env::split_paths(&others));
     }
     let path: OsString = std::env::join_paths(path).map_err(|error| {
-        Failure::usage(format!("the folder of the run cannot be put on PYTHONPATH: {error}"))
+        Failure::usage(format!("cannot add the folder of the run to PYTHONPATH: {error}"))
     })?;
     command.env("PYTHONPATH", path).env("NOVAMIND_API_PORT", remote.port.to_string());
     command.env("NOVAMIND_RUN", &own.id);
-    // Commands of the agent find the run, wherever they are started.
+    // `novamind agent` finds the run from any working directory.
     command
         .env("NOVAMIND_RUNS", own.folder.parent().unwrap_or(&own.folder))
         .env_remove("NOVAMIND_PARTICIPANT");

@@ -1,7 +1,7 @@
-//! The run of an agent, and the server that plays it: found again, or started.
+//! The run of an agent and its server, which is found or started.
 //!
-//! Commands that come at once wait for each other only until a server is there: whoever holds `server.lock` in the folder of the
-//! run looks for one and starts one. That a server lives is told by the lock of the run, which ends with its process.
+//! Concurrent commands take `server.lock` in the run folder while they look for a server or start one. A server is alive if its
+//! process holds the lock of the run.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -17,31 +17,31 @@ use crate::record::folder::lock::is_being_played;
 use crate::record::folder::runs::{find_run_to_read, run_folder};
 use crate::server::{Remote, write_client};
 
-/// File in the folder of runs that names the run which `agent new` began last.
+/// File in the folder of runs that names the last run that `agent new` created.
 const LATEST: &str = "agent-run.txt";
-/// How long a server that was asked to stop may take: a week that is simulated is finished first.
+/// Time limit for stopping a server, which first finishes the week that it simulates.
 const LAST_WEEK: Duration = Duration::from_secs(120);
 
-/// Whether requests must carry a secret.
+/// Whether requests must carry a token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Secrecy {
-    /// They must: commands find it in the folder of the run.
+    /// Requests need the token, which commands read from the run folder.
     Token,
-    /// They need none, so that clients that know of none can play.
+    /// Requests need no token, for clients that do not support one.
     Open,
 }
 
 /// The run of an agent.
 #[derive(Debug, Clone)]
 pub struct AgentRun {
-    /// Its name.
+    /// Run id.
     pub id: String,
-    /// Its folder, from the root on.
+    /// Absolute path of the run folder.
     pub folder: PathBuf,
 }
 
 impl AgentRun {
-    /// Begins a run.
+    /// Creates a run.
     ///
     /// # Errors
     /// As `serve --new`.
@@ -52,17 +52,17 @@ impl AgentRun {
         AgentRun::of(&folder.ok_or_else(|| Failure::failed("the run was not kept"))?)
     }
 
-    /// The run that is named, or that `agent new` began last in this folder of runs.
+    /// Finds the named run, or the last one that `agent new` created in this folder of runs.
     ///
     /// # Errors
-    /// There is none; it belongs to a study.
+    /// There is no such run, or it belongs to a study.
     pub fn find(named: Option<&str>, context: &Context) -> Result<AgentRun, Failure> {
         let runs = context.runs()?;
         let remembered = || std::fs::read_to_string(runs.join(LATEST)).ok().map(|id| id.trim().to_owned());
         let id = named.map(str::to_owned).or_else(remembered).ok_or_else(|| {
-            Failure::usage("`novamind agent new` has begun no run here; name one with --run or NOVAMIND_RUN")
+            Failure::usage("there is no run of an agent here: create one with `novamind agent new`, or give one with --run or NOVAMIND_RUN")
         })?;
-        // The usual case is answered without reading every run.
+        // Usually the file answers without reading every run.
         let own = run_folder(&runs, &id);
         let is_name = !id.is_empty() && id.chars().all(|letter| letter.is_ascii_alphanumeric());
         let folder = match is_name && own.join("run.toml").is_file() {
@@ -75,12 +75,12 @@ impl AgentRun {
 
     fn of(folder: &Path) -> Result<AgentRun, Failure> {
         let folder = std::path::absolute(folder)
-            .map_err(|error| Failure::failed(format!("the folder of work: {error}")))?;
+            .map_err(|error| Failure::failed(format!("the working directory: {error}")))?;
         let id = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         Ok(AgentRun { id, folder })
     }
 
-    /// Lets commands that name no run find this one.
+    /// Makes this run the default of later commands.
     ///
     /// # Errors
     /// The folder of runs cannot be written.
@@ -88,10 +88,10 @@ impl AgentRun {
         Ok(write_whole(&context.runs()?.join(LATEST), format!("{}\n", self.id).as_bytes())?)
     }
 
-    /// The server that plays the run; one is started if there is none.
+    /// Connects to the server that plays the run, and starts it if necessary.
     ///
     /// # Errors
-    /// None can be started: the run is in use elsewhere, or damaged.
+    /// The server cannot be started: the run is in use elsewhere or damaged.
     pub fn serve(&self, secrecy: Secrecy) -> Result<Remote, Failure> {
         let _gate = self.gate()?;
         match Remote::find(&self.folder, &self.id) {
@@ -100,10 +100,10 @@ impl AgentRun {
         }
     }
 
-    /// Stops the server; whether there was one.
+    /// Stops the server. Returns whether one was running.
     ///
     /// # Errors
-    /// It does not end.
+    /// The server does not stop in time.
     pub fn stop(&self) -> Result<bool, Failure> {
         let _gate = self.gate()?;
         let Some(remote) = Remote::find(&self.folder, &self.id) else { return Ok(false) };
@@ -113,7 +113,7 @@ impl AgentRun {
         while is_being_played(&self.folder) {
             if asked.elapsed() > LAST_WEEK {
                 return Err(Failure::failed(format!(
-                    "process {} was asked to stop and goes on",
+                    "process {} did not stop in time",
                     remote.announcement.pid
                 )));
             }
@@ -122,7 +122,7 @@ impl AgentRun {
         Ok(true)
     }
 
-    /// The Python client of the run, in its folder.
+    /// Writes the Python client to the run folder and returns its path.
     ///
     /// # Errors
     /// The folder cannot be written.
@@ -133,25 +133,25 @@ impl AgentRun {
         Ok(client)
     }
 
-    /// Held by whoever looks for a server, starts or stops one.
+    /// Takes the lock for finding, starting or stopping a server.
     fn gate(&self) -> Result<File, Failure> {
         let path = self.folder.join("server.lock");
         let open = File::options().create(true).truncate(false).write(true).open(&path);
         open.and_then(|file| file.lock().map(|()| file))
-            .map_err(|error| Failure::failed(format!("{} cannot be locked: {error}", path.display())))
+            .map_err(|error| Failure::failed(format!("cannot lock {}: {error}", path.display())))
     }
 
     fn start(&self, secrecy: Secrecy) -> Result<Remote, Failure> {
-        let failed = |error: std::io::Error| Failure::failed(format!("no server can be started: {error}"));
+        let failed = |error: std::io::Error| Failure::failed(format!("cannot start a server: {error}"));
         let log = self.folder.join("server.log");
         let runs = self.folder.parent().unwrap_or(&self.folder);
         let mut command = Command::new(std::env::current_exe().map_err(failed)?);
         command.arg("--runs-dir").arg(runs).args(["serve", "--run", &self.id]);
-        // The folder of runs already is that of the participant.
+        // The folder of runs is already that of the participant.
         command.env_remove("NOVAMIND_PARTICIPANT").env_remove("NOVAMIND_RUNS");
         if secrecy == Secrecy::Token {
             let token = self.folder.join("server.token");
-            // Left empty by a process that was killed while it made it.
+            // A process that was killed may have left it empty.
             if std::fs::metadata(&token).is_ok_and(|file| file.len() == 0) {
                 std::fs::remove_file(&token).map_err(failed)?;
             }
@@ -159,7 +159,7 @@ impl AgentRun {
         }
         command.stdin(Stdio::null()).stdout(Stdio::piped());
         command.stderr(File::create(&log).map_err(failed)?);
-        // A key that interrupts the agent must not reach the server.
+        // A ctrl-c for the agent must not reach the server.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let mut child = command.spawn().map_err(failed)?;
@@ -175,10 +175,7 @@ impl AgentRun {
             return Err(Failure::with_code(code.unwrap_or(1), said));
         }
         Remote::find(&self.folder, &self.id).ok_or_else(|| {
-            Failure::failed(format!(
-                "a server was started and does not answer; what it said is in {}",
-                log.display()
-            ))
+            Failure::failed(format!("the server does not respond; its output is in {}", log.display()))
         })
     }
 }

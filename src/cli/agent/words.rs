@@ -1,4 +1,4 @@
-//! What an agent writes on the command line, as the objects that are sent.
+//! Converts command-line arguments of an agent to JSON request bodies.
 
 use std::io::Read;
 
@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use crate::cli::Failure;
 use crate::tools::{ArgumentKind, FORECAST_KEYS, find};
 
-/// A text, or standard input where it is `-`.
+/// Returns a text, or standard input for `-`.
 ///
 /// # Errors
 /// Standard input cannot be read.
@@ -17,14 +17,14 @@ pub fn text_of(word: &str) -> Result<String, Failure> {
     }
     let mut text = String::new();
     let read = std::io::stdin().read_to_string(&mut text);
-    read.map_err(|error| Failure::failed(format!("standard input cannot be read: {error}")))?;
+    read.map_err(|error| Failure::failed(format!("cannot read standard input: {error}")))?;
     Ok(text)
 }
 
-/// What is filed before a week.
+/// Returns the body of a request for a week.
 ///
 /// # Errors
-/// It is neither one object nor a rationale with twelve numbers.
+/// The arguments are neither one object nor a rationale with twelve numbers.
 pub fn next_week_of(words: &[String]) -> Result<Value, Failure> {
     match words {
         [object] => object_of(&text_of(object)?),
@@ -38,7 +38,7 @@ pub fn next_week_of(words: &[String]) -> Result<Value, Failure> {
             Ok(json!({ "rationale": rationale, "predictions": predictions }))
         }
         _ => Err(Failure::usage(format!(
-            "next-week takes one JSON object, or a rationale and {} numbers: point, lower and upper of {}; there are {} words",
+            "next-week takes one JSON object, or a rationale and {} numbers: point, lower and upper of {}; you gave {} arguments",
             3 * FORECAST_KEYS.len(),
             FORECAST_KEYS.join(", "),
             words.len()
@@ -48,10 +48,10 @@ pub fn next_week_of(words: &[String]) -> Result<Value, Failure> {
 
 fn number(word: &str) -> Result<f64, Failure> {
     let read = word.parse::<f64>().ok().filter(|value| value.is_finite());
-    read.ok_or_else(|| Failure::usage(format!("{word} is no number; write one as 950000 or 9.5e5")))
+    read.ok_or_else(|| Failure::usage(format!("{word} is not a number; write it as 950000 or 9.5e5")))
 }
 
-/// The arguments of a call.
+/// Returns the arguments of a call.
 ///
 /// # Errors
 /// They are neither one object nor pairs of --KEY VALUE.
@@ -66,8 +66,8 @@ pub fn called_with(tool: &str, words: &[String]) -> Result<Value, Failure> {
 fn object_of(text: &str) -> Result<Value, Failure> {
     match serde_json::from_str(text) {
         Ok(object @ Value::Object(_)) => Ok(object),
-        Ok(_) => Err(Failure::usage("one JSON object is needed, as in '{\"A\": 14}'")),
-        Err(error) => Err(Failure::usage(format!("that is no JSON object: {error}"))),
+        Ok(_) => Err(Failure::usage("the arguments must be one JSON object, for example '{\"A\": 14}'")),
+        Err(error) => Err(Failure::usage(format!("the arguments are not a valid JSON object: {error}"))),
     }
 }
 
@@ -77,7 +77,7 @@ fn pairs(tool: &str, words: &[String]) -> Result<Map<String, Value>, Failure> {
     while let Some(word) = rest.next() {
         let wrong = || {
             Failure::usage(format!(
-                "{word} is out of place: arguments are one JSON object, or --KEY VALUE for each"
+                "unexpected {word}: arguments are one JSON object, or --KEY VALUE for each"
             ))
         };
         let name = word.strip_prefix("--").filter(|name| !name.is_empty()).ok_or_else(wrong)?;
@@ -94,7 +94,7 @@ fn pairs(tool: &str, words: &[String]) -> Result<Map<String, Value>, Failure> {
     Ok(given)
 }
 
-/// A value as its argument takes it: texts stay texts, whatever they look like.
+/// Converts a value to the type of its argument. Texts stay texts even if they look like numbers.
 fn value_of(tool: &str, name: &str, text: String) -> Value {
     let is_argument = |argument: &&crate::tools::Argument| argument.name == name;
     let kind = find(tool).and_then(|tool| tool.spec().arguments.iter().find(is_argument));

@@ -1,4 +1,4 @@
-//! The rows of the speed table that the console adds.
+//! Benchmark cases of the console.
 
 use crate::console::app::Settings;
 use crate::console::keys::Keys;
@@ -8,10 +8,9 @@ use crate::lab::bench::{Bench, BenchError, BenchFigure, Case, Samples, Unit, kee
 use crate::lab::play_opponents;
 use crate::tui::glyphs::Glyphs;
 
-/// Weeks whose keys are measured for each repetition: some hundred keys.
+/// Weeks whose keys are measured in each repetition: several hundred keys.
 const WEEKS: usize = 6;
 
-/// What is measured.
 pub const CASES: &[Case] = &[
     Case {
         name: "frame",

@@ -1,4 +1,4 @@
-//! What a program waits for that plays over HTTP.
+//! Benchmark cases of the HTTP server, as a client experiences it.
 
 use std::sync::mpsc::channel;
 use std::time::Instant;
@@ -10,10 +10,9 @@ use crate::record::folder::runs::run_folder;
 use crate::server::{HeldPort, HttpOptions, Remote, serve_http};
 use crate::session::{Access, Session};
 
-/// Requests of a kind for each repetition.
+/// Requests of each kind per repetition.
 const REQUESTS: usize = 40;
 
-/// What is measured of the server.
 pub const CASES: &[Case] = &[Case {
     name: "http",
     figures: &[
@@ -39,8 +38,10 @@ fn http(bench: &Bench) -> Result<Samples, BenchError> {
         serve_http(session, held, &HttpOptions::default(), announce, |words| eprintln!("{words}"))
     });
     let there = waits.recv().ok().and_then(|()| Remote::find(&folder, &run));
-    let samples =
-        there.as_ref().ok_or_else(|| failed("no server answers")).and_then(|remote| ask(remote, bench));
+    let samples = there
+        .as_ref()
+        .ok_or_else(|| failed("the server does not respond"))
+        .and_then(|remote| ask(remote, bench));
     if let Some(remote) = there {
         remote.shut_down().map_err(failed)?;
     }
@@ -67,7 +68,7 @@ fn ask(remote: &Remote, bench: &Bench) -> Result<Samples, BenchError> {
     Ok(vec![calls, queries.get(slowest.saturating_sub(1)).copied().into_iter().collect(), weeks])
 }
 
-/// Milliseconds that each of some requests took.
+/// Returns the duration of each request in milliseconds.
 fn timed(
     remote: &Remote,
     route: &str,

@@ -1,4 +1,4 @@
-//! `novamind lab ablate`: what rivals cost.
+//! `novamind lab ablate`: the effect of competitors that copy.
 
 use clap::Args;
 
@@ -13,16 +13,15 @@ use crate::lab::ablation::{
 };
 use crate::lab::experiment::{Experiment, ExperimentResults};
 
-/// Options of `lab ablate`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Policy that plays, by name or path [default: a probe with shared development, and one with targeted development for the drain].
+    /// Policy, by name or path [default: a probe with shared development, and for the drain one with targeted development]
     #[arg(long, value_name = "NAME|FILE")]
     policy: Option<String>,
-    /// Seed, or a range with both ends.
+    /// Seed, or a range including both ends
     #[arg(long, default_value = "1..24", value_name = "N|A..B", value_parser = parse_seeds)]
     seeds: Seeds,
-    /// Day whose subscribers are compared, the last one of a week.
+    /// Day on which subscribers are compared, the last day of a week
     #[arg(long, default_value = "140", value_name = "N", value_parser = parse_week_end)]
     day: u32,
     #[command(flatten)]
@@ -31,18 +30,16 @@ pub struct Options {
     output: OutputOptions,
 }
 
-/// Days of the long horizon.
 const LONG_DAYS: u32 = 500;
 
 fn parse_week_end(text: &str) -> Result<u32, String> {
     let day: u32 = text.parse().map_err(|_| format!("{text} is not a day"))?;
     match day.is_multiple_of(7) && (7..=LONG_DAYS).contains(&day) {
         true => Ok(day),
-        false => Err(format!("weeks end on days 7, 14, … {}", LONG_DAYS / 7 * 7)),
+        false => Err(format!("give the last day of a week: 7, 14, … {}", LONG_DAYS / 7 * 7)),
     }
 }
 
-/// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let (shared, targeted) = match &options.policy {
         Some(name) => {

@@ -1,4 +1,4 @@
-//! `novamind lab baseline`: the paper's rule-based configurations, or a grid.
+//! `novamind lab baseline`: plays the paper's rule-based configurations or another grid.
 
 use clap::Args;
 
@@ -12,19 +12,18 @@ use crate::lab::experiment::{Arm, Experiment, ExperimentResults, Prepared};
 use crate::record::folder::configuration::DEFAULT_SCENARIO;
 use crate::report::comparable::PUBLISHED_DAYS;
 
-/// Options of `lab baseline`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Seed, or a range with both ends.
+    /// Seed, or a range including both ends
     #[arg(long, default_value = "1..24", value_name = "N|A..B", value_parser = parse_seeds)]
     seeds: Seeds,
-    /// Another grid: a shipped one, or the path of a file.
+    /// Another grid: the name of a bundled one, or the path of a file
     #[arg(long, default_value = PAPER, value_name = "NAME|FILE")]
     grid: String,
-    /// Scenario [default: as the grid says, else default].
+    /// Scenario [default: that of the grid, otherwise default]
     #[arg(long, value_name = "NAME")]
     scenario: Option<String>,
-    /// Last day of the runs [default: as the grid or scenario says, else 500].
+    /// Last day of the runs [default: that of the grid or scenario, otherwise 500]
     #[arg(long, value_name = "N")]
     days: Option<u32>,
     #[command(flatten)]
@@ -33,7 +32,6 @@ pub struct Options {
     output: OutputOptions,
 }
 
-/// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let grid = Grid::find(&options.grid)?;
     let results = played(&grid, options, context)?;
@@ -43,7 +41,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     options.output.show(&baseline_exhibit(&grid, is_of_the_paper, &results))
 }
 
-/// Plays the leaders first: most other configurations then turn out to be known.
+/// Plays the leaders first, because most other configurations turn out to be identical to one of them.
 fn played(grid: &Grid, options: &Options, context: &Context) -> Result<ExperimentResults, Failure> {
     let points = &grid.configurations;
     let seeds = options.seeds.first..=options.seeds.last;
@@ -61,7 +59,7 @@ fn played(grid: &Grid, options: &Options, context: &Context) -> Result<Experimen
     for own in points {
         starts.push(start_cash(own, options, context)?);
     }
-    // What was just played is not played afresh again.
+    // Results that were just computed are used even with --fresh.
     let play = PlayOptions { fresh: false, ..options.play.clone() };
     conduct_knowing("baseline", &all, &play, context, |prepared: &mut Prepared<'_>| {
         for (at, own) in points.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! `novamind lab behaviour`: how runs were played.
+//! `novamind lab behavior`: measures how runs were played.
 
 use clap::Args;
 
@@ -7,17 +7,16 @@ use super::read_runs::of_runs;
 use crate::cli::{Context, Failure};
 use crate::lab::behaviour::{ObservedRun, exhibit_of};
 
-/// Options of `lab behaviour`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Runs, or `latest`: the newest.
+    /// Runs, or `latest` for the newest
     #[arg(required = true, value_name = "RUN")]
     runs: Vec<String>,
     #[command(flatten)]
     output: OutputOptions,
 }
 
-/// Runs the command; nothing of the runs is changed but that they are read.
+/// Runs the command. The runs record only that they were read.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let observed = of_runs(&options.runs, "behaviour", context, |session, trajectory| {
         ObservedRun::of(session, &trajectory.lines)

@@ -1,4 +1,4 @@
-//! `novamind lab bound`: the paper's account of an upper bound.
+//! `novamind lab bound`: computes the paper's upper bound.
 
 use clap::Args;
 
@@ -7,10 +7,9 @@ use super::world::WorldOptions;
 use crate::cli::{Context, Failure};
 use crate::lab::bound::{BoundAccount, Premises, bound_exhibit, sensitivity};
 
-/// Options of `lab bound`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// So many times over is targeted development paid that is just enough.
+    /// Multiple of the minimum that is spent on targeted development: 1 to 4
     #[arg(long, default_value = "3", value_name = "1..4", value_parser = parse_slack)]
     slack: u8,
     #[command(flatten)]
@@ -19,19 +18,17 @@ pub struct Options {
     output: OutputOptions,
 }
 
-/// Reads a slack.
 fn parse_slack(text: &str) -> Result<u8, String> {
     let whole = text.parse::<u8>().ok().filter(|slack| (1..=4).contains(slack));
-    whole.ok_or_else(|| format!("{text} is no slack: 1, 2, 3 or 4"))
+    whole.ok_or_else(|| format!("{text} is not a valid slack; use 1, 2, 3 or 4"))
 }
 
-/// Runs the command; nothing is played.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let (days, params) = options.world.terms(context)?;
     let premises = Premises::of_the_paper(f64::from(options.slack));
     if days != premises.run_days {
         return Err(Failure::usage(format!(
-            "the account prices runs of {} days and compares them with the published ones; these parameters are of {days} days",
+            "the bound is defined for runs of {} days, as published; these parameters have {days} days",
             premises.run_days
         )));
     }

@@ -1,4 +1,4 @@
-//! `novamind lab compare`: runs side by side.
+//! `novamind lab compare`: compares runs.
 
 use clap::Args;
 use serde_json::json;
@@ -12,27 +12,26 @@ use crate::notation::printable;
 use crate::report::Logbook;
 use crate::report::ranking::published;
 
-/// Options of `lab compare`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Runs, or `latest`: the newest.
+    /// Runs, or `latest` for the newest
     #[arg(required = true, value_name = "RUN")]
     runs: Vec<String>,
-    /// Print as one JSON object, with the logbook of every run.
+    /// Print one JSON object, with the logbook of every run
     #[arg(long, conflicts_with = "csv")]
     json: bool,
-    /// Print as comma-separated values: one figure or day per row.
+    /// Print comma-separated values: one figure or day per row
     #[arg(long)]
     csv: bool,
-    /// Widest line of the text: runs stand side by side if they have room, else one a row [default: the terminal's].
+    /// Widest line of the text, in columns; runs are shown side by side if they fit [default: that of the terminal]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(40..))]
     width: Option<u16>,
 }
 
-/// Columns of a page that is not read in a terminal.
+/// Columns of text that is not printed at a terminal.
 const PAGE_WIDTH: usize = 160;
 
-/// Runs the command; nothing of the runs is changed.
+/// Runs the command. Does not modify the runs.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let compared = of_runs(&options.runs, "compare", context, |session, trajectory| {
         Logbook::of(session, &trajectory.lines, &[])

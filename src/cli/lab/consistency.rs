@@ -1,4 +1,4 @@
-//! `novamind lab consistency`: the claims on common luck, tried by playing.
+//! `novamind lab consistency`: tests that policies on the same seed get the same random draws.
 
 use clap::Args;
 
@@ -8,35 +8,33 @@ use crate::cli::{Context, Failure};
 use crate::lab::Policy;
 use crate::lab::consistency::{ConsistencySpec, PLAYS_OF_A_SEED, check_consistency, contrasting_policies};
 
-/// Options of `lab consistency`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Seed, or a range with both ends: 1..4.
+    /// Seed, or a range including both ends: 1..4
     #[arg(long, default_value = "42", value_name = "N|A..B", value_parser = parse_seeds)]
     seeds: Seeds,
-    /// A policy, by name or path; give two [default: two that differ in all that is tried].
+    /// A policy, by name or path; give two [default: two that differ in everything that is tested]
     #[arg(long, value_name = "NAME|FILE")]
     policy: Vec<String>,
-    /// Scenario [default: as the policies say].
+    /// Scenario [default: as in the policies]
     #[arg(long, value_name = "NAME")]
     scenario: Option<String>,
-    /// Stop after this day; the horizon stays.
+    /// Stop after this day; the horizon does not change
     #[arg(long, value_name = "N")]
     until: Option<u32>,
-    /// Runs played at the same time [default: as many as there are processors].
+    /// Number of runs to play in parallel [default: the number of processors]
     #[arg(long, value_name = "N")]
     jobs: Option<usize>,
     #[command(flatten)]
     output: OutputOptions,
 }
 
-/// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let find = |name: &String| Policy::find(name, &context.configuration);
     let policies = match options.policy.as_slice() {
         [] => contrasting_policies()?,
         [one, other] => [find(one)?, find(other)?],
-        _ => return Err(Failure::usage("--policy is given twice or not at all")),
+        _ => return Err(Failure::usage("give --policy twice or not at all")),
     };
     let spec = |seeds| ConsistencySpec { seeds, scenario: options.scenario.clone(), until: options.until };
     if let Some(obstacle) = spec(Vec::new()).obstacle(&policies) {
@@ -52,13 +50,13 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     progress.finish_and_clear();
     if check.plays_alike {
         return Err(Failure::usage(
-            "the two policies decide alike, which tries nothing: give two that differ",
+            "the two policies make the same decisions, which tests nothing: give two that differ",
         ));
     }
     options.output.show(&check.exhibit())?;
     match check.failures().count() {
         0 => Ok(()),
-        1 => Err(Failure::failed("one claim on common luck does not hold")),
-        count => Err(Failure::failed(format!("{count} claims on common luck do not hold"))),
+        1 => Err(Failure::failed("1 claim about common random draws is false")),
+        count => Err(Failure::failed(format!("{count} claims about common random draws are false"))),
     }
 }

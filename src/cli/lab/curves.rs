@@ -1,4 +1,4 @@
-//! `novamind lab curves`: participation curves.
+//! `novamind lab curves`: draws participation curves.
 
 use clap::Args;
 
@@ -8,10 +8,9 @@ use crate::cli::{Context, Failure};
 use crate::lab::curves::{all_curves, curve_of};
 use crate::world::identifiers::Group;
 
-/// Options of `lab curves`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Only this group, and how its customers differ.
+    /// Only this group, with the variation among its customers
     #[arg(value_name = "GROUP")]
     group: Option<String>,
     #[command(flatten)]
@@ -20,13 +19,12 @@ pub struct Options {
     output: OutputOptions,
 }
 
-/// Runs the command; nothing is played.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let params = options.world.params(context)?;
     let Some(id) = &options.group else { return options.output.show(&all_curves(&params)) };
     let group = Group::parse(id).ok_or_else(|| {
         let all: Vec<&str> = Group::all().map(Group::id).collect();
-        Failure::usage(format!("there is no group {id}; there are {}", all.join(", ")))
+        Failure::usage(format!("there is no group {id}; the groups are {}", all.join(", ")))
     })?;
     options.output.show(&curve_of(group, &params))
 }

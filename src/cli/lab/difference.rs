@@ -1,4 +1,4 @@
-//! `novamind lab diff`: two runs on a day.
+//! `novamind lab diff`: compares two runs on a day.
 
 use clap::Args;
 use serde_json::json;
@@ -10,24 +10,23 @@ use crate::record::folder::runs::find_run_to_read;
 use crate::report::xray::{difference_as_data, runs_in_words};
 use crate::session::Session;
 
-/// Options of `lab diff`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// A debug run, or one that is over.
+    /// A debug run or a finished run
     #[arg(value_name = "RUN_A")]
     one: String,
-    /// Another.
+    /// Another run
     #[arg(value_name = "RUN_B")]
     other: String,
-    /// Day that is compared [default: the first on which something differs].
+    /// Day to compare [default: the first day on which something differs]
     #[arg(value_name = "DAY")]
     day: Option<u32>,
-    /// Print as one JSON object.
+    /// Print one JSON object
     #[arg(long)]
     json: bool,
 }
 
-/// Runs the command; nothing of the runs is changed but that the look is recorded.
+/// Runs the command. The runs record only the inspection.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let runs = context.runs()?;
     let open = |name: &str| -> Result<Session, Failure> {
@@ -37,7 +36,9 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     };
     let mut one = open(&options.one)?;
     if one.folder() == Some(&*find_run_to_read(&runs, &options.other)?) {
-        return Err(Failure::usage("name two runs; `diff DAY DAY` in plain mode compares two days of one"));
+        return Err(Failure::usage(
+            "give two different runs; to compare two days of one run, use `diff DAY DAY` in plain mode",
+        ));
     }
     let mut other = open(&options.other)?;
     let found = one.inspect().difference_to(&mut other, options.day);

@@ -1,4 +1,4 @@
-//! Experiments of the laboratory's commands: progress, ctrl-c, and the file in which their results are kept.
+//! Support for commands that run experiments: progress, ctrl-c, and the file with cached results.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -15,18 +15,18 @@ use crate::lab::experiment::{
 /// Options of commands that play many runs.
 #[derive(Debug, Clone, Args)]
 pub struct PlayOptions {
-    /// Runs played at the same time [default: as many as there are processors].
+    /// Number of runs to play in parallel [default: the number of processors]
     #[arg(long, value_name = "N")]
     pub jobs: Option<usize>,
-    /// Play every run anew, also those of which results are kept.
+    /// Play every run again, even if its result is cached
     #[arg(long)]
     pub fresh: bool,
 }
 
-/// Conducts the experiment of a command, whose results are kept under its name: what was played once is not played again.
+/// Conducts the experiment of a command. Results are cached under its name, so that each run is played once.
 ///
 /// # Errors
-/// An arm could not begin, a run cannot be played, or the results cannot be kept; somebody stopped it.
+/// An arm cannot start, a run cannot be played, the results cannot be written, or the user stopped the experiment.
 pub fn conduct(
     command: &str,
     experiment: &Experiment,
@@ -36,10 +36,10 @@ pub fn conduct(
     conduct_knowing(command, experiment, options, context, |_| ())
 }
 
-/// The same; before anything is played, what is known from elsewhere is added.
+/// Conducts an experiment after adding results that are already known.
 ///
 /// # Errors
-/// The same.
+/// As [`conduct`].
 pub fn conduct_knowing(
     command: &str,
     experiment: &Experiment,
@@ -53,10 +53,10 @@ pub fn conduct_knowing(
     with_store(&path, experiment, &all, (options, context), add_known, every)
 }
 
-/// Conducts some runs of an experiment, by their numbers, with results in a file.
+/// Conducts the numbered runs of an experiment, with results in a file.
 ///
 /// # Errors
-/// The same.
+/// As [`conduct`].
 pub fn conduct_some(
     path: &Path,
     experiment: &Experiment,
@@ -97,12 +97,12 @@ fn with_store<R>(
     Ok(results?)
 }
 
-/// What ctrl-c sets; a second one ends the program at once.
+/// Returns a flag that ctrl-c sets. A second ctrl-c ends the program at once.
 pub fn stopped_by_signals() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     #[cfg(unix)]
     for (signal, code) in [(signal_hook::consts::SIGINT, 130), (signal_hook::consts::SIGTERM, 143)] {
-        // Without a handler the signal ends the program as ever, and what is kept is kept.
+        // Without a handler the signal ends the program; cached results stay.
         let _ = signal_hook::flag::register_conditional_shutdown(signal, code, Arc::clone(&stop));
         let _ = signal_hook::flag::register(signal, Arc::clone(&stop));
     }

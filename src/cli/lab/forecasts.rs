@@ -1,4 +1,4 @@
-//! `novamind lab forecasts`.
+//! `novamind lab forecasts`: measures the coverage of naive forecasts.
 
 use std::path::PathBuf;
 
@@ -12,24 +12,22 @@ use crate::lab::{PlayedWeeks, Policy, STRONG, coverage, horizons, measure, play_
 use crate::session::Bands;
 use crate::shipped;
 
-/// Options of `lab forecasts`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Seeds of each policy.
+    /// Seeds of each policy
     #[arg(long, default_value = "1..24", value_name = "A..B", value_parser = parse_seeds)]
     seeds: Seeds,
-    /// Only this policy, by name or path; can be repeated [default: the shipped ones but the strong ones].
+    /// Only this policy, by name or path; can be repeated [default: the bundled policies except the strong ones]
     #[arg(long, value_name = "NAME|FILE")]
     only: Vec<String>,
-    /// Seeds played at the same time.
+    /// Number of seeds to play in parallel
     #[arg(long, value_name = "N")]
     jobs: Option<usize>,
-    /// Measure the intervals anew and write them to this file, instead of testing the shipped ones.
+    /// Measure new intervals and write them to this file, instead of testing the bundled ones
     #[arg(long, value_name = "FILE")]
     write: Option<PathBuf>,
 }
 
-/// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let runs = played(options, context)?;
     let horizons = horizons();
@@ -46,7 +44,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Every run, in the order of policies and seeds.
+/// Returns every run, in the order of policies and seeds.
 fn played(options: &Options, context: &Context) -> Result<Vec<PlayedWeeks>, Failure> {
     let names: Vec<String> = match options.only.is_empty() {
         true => {
@@ -75,7 +73,7 @@ fn played(options: &Options, context: &Context) -> Result<Vec<PlayedWeeks>, Fail
     Ok(runs?)
 }
 
-/// How often intervals held, by policy and horizon.
+/// Returns the coverage by policy and horizon.
 fn table(runs: &[PlayedWeeks], horizons: &[u32], bands: &Bands) -> String {
     let row = |name: &str, policy: Option<&str>| {
         let cells = horizons.iter().map(|horizon| {

@@ -1,4 +1,4 @@
-//! `novamind lab laws`: every distribution of the world.
+//! `novamind lab distributions`: every probability distribution of the simulator.
 
 use clap::Args;
 
@@ -7,19 +7,18 @@ use super::world::WorldOptions;
 use crate::cli::{Context, Failure};
 use crate::lab::laws::{Luck, WorldDraw, all_laws, one_law};
 
-/// Options of `lab laws`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Only this one, with its histogram.
+    /// Only this distribution, with its histogram
     #[arg(value_name = "NAME")]
     name: Option<String>,
-    /// For this group or R&D tier [default: the first].
+    /// Group or R&D tier [default: the first]
     #[arg(long, value_name = "MEMBER", requires = "name")]
     of: Option<String>,
-    /// Draws of each.
+    /// Number of draws of each distribution
     #[arg(long, default_value = "100000", value_name = "N", value_parser = clap::value_parser!(u64).range(2..=10_000_000))]
     draws: u64,
-    /// Seed of the draws.
+    /// Seed of the draws
     #[arg(long, default_value = "1", value_name = "N")]
     seed: u64,
     #[command(flatten)]
@@ -28,7 +27,6 @@ pub struct Options {
     output: OutputOptions,
 }
 
-/// Runs the command; nothing is played.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let params = options.world.params(context)?;
     let luck = Luck::of(params, options.seed);
@@ -43,17 +41,20 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 fn find(name: &str) -> Result<&'static WorldDraw, Failure> {
     WorldDraw::find(name).map_err(|near| {
         let help = match near.is_empty() {
-            true => "`novamind lab laws` lists them".to_owned(),
+            true => "`novamind lab distributions` lists them".to_owned(),
             false => format!("did you mean {}?", near.join(" or ")),
         };
-        Failure::usage(format!("there is no law {name}; {help}"))
+        Failure::usage(format!("there is no distribution {name}; {help}"))
     })
 }
 
 fn member_of(own: &WorldDraw, wanted: Option<&str>, luck: &Luck) -> Result<(usize, String), Failure> {
     let members = own.family.members(&luck.params);
     let Some(wanted) = wanted else {
-        return members.into_iter().next().ok_or_else(|| Failure::usage("nothing is drawn so here"));
+        return members
+            .into_iter()
+            .next()
+            .ok_or_else(|| Failure::usage("these parameters do not use this distribution"));
     };
     let is_wanted = |(number, name): &(usize, String)| {
         name == wanted || (name.starts_with("tier") && number.to_string() == wanted)
@@ -62,7 +63,7 @@ fn member_of(own: &WorldDraw, wanted: Option<&str>, luck: &Luck) -> Result<(usiz
         let names: Vec<&str> =
             members.iter().map(|(_, name)| name.as_str()).filter(|name| !name.is_empty()).collect();
         Failure::usage(match names.is_empty() {
-            true => format!("{} is one for all: leave out --of", own.name),
+            true => format!("{} is the same for all: leave out --of", own.name),
             false => format!("--of takes one of {}", names.join(", ")),
         })
     })

@@ -1,4 +1,4 @@
-//! `novamind lab metrics`: the figures of a run day by day, hidden ones included.
+//! `novamind lab metrics`: prints all figures of a run day by day, hidden ones included.
 
 use clap::Args;
 
@@ -8,15 +8,14 @@ use crate::insight::{Inspect, open_to_look_inside};
 use crate::lab::Collector;
 use crate::record::folder::runs::find_run_to_read;
 
-/// Options of `lab metrics`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Run, or `latest`: the newest; a debug run, or one that is over.
+    /// Run, or `latest` for the newest; must be a debug run or a finished run
     #[arg(value_name = "RUN")]
     run: String,
 }
 
-/// Runs the command; nothing of the run is changed but that the look is recorded.
+/// Runs the command. The run records only the inspection.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs()?, &options.run)?;
     context.check_look(&folder)?;
@@ -25,7 +24,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let told = session.inspect().tell_days_again(&mut |day| collector.day(day));
     told.map_err(|refusal| Failure::failed(refusal.message))?;
     let manifest = session.manifest();
-    // A participant of a study does not learn the seed.
+    // A participant of a study must not learn the seed.
     let seed = match manifest.study.is_none() || context.is_experimenter {
         true => manifest.seed.to_string(),
         false => String::new(),

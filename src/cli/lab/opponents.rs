@@ -1,4 +1,4 @@
-//! `novamind lab opponents`: what the strong policies make of the world of a run.
+//! `novamind lab opponents`: plays the strong policies in the world of a run.
 
 use clap::Args;
 use serde_json::json;
@@ -12,18 +12,17 @@ use crate::record::trajectory::record::Ended;
 use crate::report::opponents::{Opponent, Opponents};
 use crate::session::Session;
 
-/// Options of `lab opponents`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Run, or `latest`: the newest; one that is over, or a debug run.
+    /// Run, or `latest` for the newest; must be a debug run or a finished run
     #[arg(value_name = "RUN")]
     run: String,
-    /// Print as JSON.
+    /// Print as JSON
     #[arg(long)]
     json: bool,
 }
 
-/// Runs the command; nothing of the run is changed.
+/// Runs the command. Does not modify the run.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs()?, &options.run)?;
     context.check_look(&folder)?;
@@ -43,19 +42,19 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     print(&as_text(&opponents, &run))
 }
 
-/// The policies and the run itself, the best first.
+/// Formats the policies and the run itself, the best first.
 fn as_text(opponents: &Opponents, run: &Session) -> String {
     let policy = |own: &Opponent| (own.score(), own.policy.clone(), ended_in_words(own));
     let mut places: Vec<(f64, String, String)> = opponents.policies.iter().map(policy).collect();
     let (name, day) = (format!("this run, {}", run.manifest().id), run.day());
-    // Cash of another day is no score.
+    // Cash on another day is not a score.
     let not_over = match run.score() {
         Some(score) => {
             places.push((score, name, how_it_ended(run.ended() == Some(Ended::Bankruptcy), day)));
             String::new()
         }
         None => {
-            format!("\n{name}: {} on day {day}, and no score yet\n", dollars(run.company().observe().cash))
+            format!("\n{name}: {} on day {day}, no score yet\n", dollars(run.company().observe().cash))
         }
     };
     places.sort_by(|one, other| other.0.total_cmp(&one.0));

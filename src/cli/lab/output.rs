@@ -1,4 +1,4 @@
-//! How commands of the laboratory write what they show.
+//! Output options of laboratory commands.
 
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -13,33 +13,33 @@ use crate::lab::exhibit::{Exhibit, WIDTH};
 /// Options that all commands of the laboratory share.
 #[derive(Debug, Clone, Args)]
 pub struct OutputOptions {
-    /// Print as one JSON object, every number in full.
+    /// Print one JSON object, with numbers at full precision
     #[arg(long, conflicts_with = "csv")]
     json: bool,
-    /// Print the table as comma-separated values, every number in full.
+    /// Print the table as comma-separated values, with numbers at full precision
     #[arg(long)]
     csv: bool,
-    /// With --csv, the table of this name [default: the first].
+    /// With --csv: name of the table [default: the first]
     #[arg(long, value_name = "NAME", requires = "csv")]
     table: Option<String>,
-    /// Draw the graphs into this file as well.
+    /// Also draw the graphs to this file
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
-    /// Widest line of the text [default: the terminal's, at most 100].
+    /// Widest line of the text, in columns [default: that of the terminal, at most 100]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(40..))]
     width: Option<u16>,
 }
 
 impl OutputOptions {
-    /// Whether rows for programs are asked for, where those are what a command prints unless it is told otherwise.
+    /// Returns whether rows are printed, for commands that print rows unless JSON or a drawing is chosen.
     pub fn is_of_rows(&self) -> bool {
         !self.json && self.svg.is_none()
     }
 
-    /// For commands that draw nothing: better known before they play than after it.
+    /// Rejects `--svg` for commands that draw nothing, before they play.
     ///
     /// # Errors
-    /// A drawing is asked for.
+    /// `--svg` is given.
     pub fn refuse_graphs(&self) -> Result<(), Failure> {
         match self.svg {
             Some(_) => Err(Failure::usage("this command has no graph: leave out --svg")),
@@ -47,15 +47,15 @@ impl OutputOptions {
         }
     }
 
-    /// The file that the graphs are drawn into, if they are asked for.
+    /// Returns the file for the graphs, if one is given.
     pub fn graphs(&self) -> Option<&Path> {
         self.svg.as_deref()
     }
 
-    /// Writes an exhibit as it was asked for.
+    /// Writes an exhibit in the chosen form.
     ///
     /// # Errors
-    /// There is no such table or nothing to draw; the drawing or standard output fails.
+    /// There is no such table or no graph, or the file or standard output cannot be written.
     pub fn show(&self, exhibit: &Exhibit) -> Result<(), Failure> {
         if let Some(path) = &self.svg {
             let drawn = exhibit
@@ -86,7 +86,7 @@ impl OutputOptions {
     }
 }
 
-/// Columns of the terminal; none where standard output is none.
+/// Returns the columns of the terminal, or `None` if standard output is not one.
 pub fn terminal_columns() -> Option<usize> {
     let size = std::io::stdout().is_terminal().then(crossterm::terminal::size)?;
     size.ok().map(|(columns, _)| usize::from(columns))

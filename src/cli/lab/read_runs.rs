@@ -1,4 +1,4 @@
-//! Runs that a command reads, one after the other.
+//! Reads the runs that a command names.
 
 use std::collections::BTreeMap;
 
@@ -9,10 +9,10 @@ use crate::record::folder::runs::find_run_to_read;
 use crate::record::trajectory::Trajectory;
 use crate::session::Session;
 
-/// What is read of each run that was named; that it is read is recorded with the run.
+/// Reads each named run with `read`, and records with the run that it was read.
 ///
 /// # Errors
-/// A run is missing, damaged, may not be looked at, or is named twice.
+/// A run is missing, damaged, not accessible, or named twice.
 pub fn of_runs<T>(
     names: &[String],
     command: &str,
@@ -25,10 +25,9 @@ pub fn of_runs<T>(
     let mut known = BTreeMap::new();
     for name in names {
         let own = find_run_to_read(&folder, name)?;
-        // Folders can be copied: the same run has the same name in all of them.
+        // Copies of a folder contain runs with the same id.
         if let Some(before) = known.insert(Manifest::read(&own)?.id, name) {
-            let message =
-                format!("{before} and {name} are one run, which would count twice; name each run once");
+            let message = format!("{before} and {name} are the same run; name each run once");
             return Err(Failure::usage(message));
         }
         context.look(&own, command, &names.join(" "))?;

@@ -1,4 +1,4 @@
-//! `novamind lab table`: the results table of the paper for own runs.
+//! `novamind lab table`: the results table of the paper for your runs.
 
 use std::path::{Path, PathBuf};
 
@@ -17,29 +17,28 @@ use crate::record::trajectory::record::Ended;
 use crate::report::comparable::{Obstacle, RunTerms};
 use crate::session::Session;
 
-/// Options of `lab table`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// What runs are put together by.
+    /// Group runs by participant or by policy
     #[arg(long, value_enum, default_value = "participant")]
     by: Whom,
     #[command(flatten)]
     output: OutputOptions,
 }
 
-/// What runs are put together by.
+/// The criterion by which runs are grouped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Whom {
-    /// Who played: participants, and policies under their names.
+    /// By participant; policies count under their names
     Participant,
-    /// The policy: what people played is left out.
+    /// By policy; runs of people are left out
     Policy,
 }
 
-/// Runs the command; nothing of the runs is changed.
+/// Runs the command. Does not modify the runs.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let runs = context.runs()?;
-    // Whoever has a folder of their own is shown that one.
+    // A participant with a separate folder sees only that folder.
     let folders = match context.participant {
         Some(_) => vec![runs],
         None => all_run_folders(&runs),
@@ -55,11 +54,11 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let (mut results, mut closed, mut unreadable) = (Vec::new(), 0, Vec::new());
     for (folder, summary) in comparable {
         match context.check_look(folder) {
-            // One run that is damaged does not take the others' table away.
+            // A damaged run does not prevent the table of the others.
             Ok(()) => match result_of(folder) {
                 Ok(None) => {}
                 Ok(Some(result)) => {
-                    // The list has seen its last weeks alone; somebody may have played before the policy did.
+                    // The list knows only the last weeks; someone may have played before the policy did.
                     let whole = RunSummary { policy: result.policy.clone(), ..summary.clone() };
                     let obstacles = RunTerms::of_summary(&whole).obstacles();
                     if obstacles.is_empty() { results.push(result) } else { left_out.push(obstacles) }
@@ -79,17 +78,17 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     };
     let mut exhibit = ResultsTable::of(&results, &left_out, &idle, by).exhibit();
     if closed > 0 {
-        exhibit.notes.push(format!("Runs whose study shows no results are left out: {closed}."));
+        exhibit.notes.push(format!("Left out because their study hides results: {closed}."));
     }
-    exhibit.notes.extend(unreadable.iter().map(|why| format!("Left out, for it cannot be read: {why}.")));
+    exhibit.notes.extend(unreadable.iter().map(|why| format!("Left out because it cannot be read: {why}.")));
     options.output.show(&exhibit)
 }
 
-/// Runs of some folders that are over.
+/// Returns the finished runs of the folders.
 fn finished_runs(folders: &[PathBuf]) -> Result<Vec<(PathBuf, RunSummary)>, Failure> {
     let mut finished = Vec::new();
     for folder in folders {
-        // A copy of a folder is the same run once more.
+        // A copied folder contains the same run again.
         let is_over = |run: &RunSummary| {
             run.problem.is_none()
                 && run.copy_of.is_none()

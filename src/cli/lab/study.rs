@@ -15,23 +15,21 @@ use crate::lab::study::{
 };
 use crate::report::count;
 
-/// Options of `lab study`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// File that names policies, scenarios, overrides and seeds.
+    /// File with policies, scenarios, overrides and seeds
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// A row for each run and day, not only for each run.
+    /// Write a row for each run and day instead of each run
     #[arg(long)]
     daily: bool,
-    /// Play only this part of it, as 2/4; all parts together are the study.
+    /// Play only this part, for example 2/4; all parts together are the study
     #[arg(long, value_name = "I/N", value_parser = parse_shard, requires = "out", conflicts_with_all = ["json", "csv", "svg"])]
     shard: Option<Shard>,
-    /// File of the rows, and the arms are told in the terminal [default: the rows go to standard output]; with --shard, the
-    /// folder of all shards.
+    /// File for the rows; the terminal then shows the arms [default: standard output]. With --shard, the folder of all shards
     #[arg(long, value_name = "PATH")]
     out: Option<PathBuf>,
-    /// Tell what would be played, and play nothing.
+    /// Show the runs that would be played, and play nothing
     #[arg(long, conflicts_with_all = ["shard", "out", "json", "csv", "svg"])]
     check: bool,
     #[command(flatten)]
@@ -40,13 +38,12 @@ pub struct Options {
     output: OutputOptions,
 }
 
-/// Options of `lab merge`.
 #[derive(Debug, Args)]
 pub struct MergeOptions {
-    /// Shards of one study, or folders of them.
+    /// Shards of one study, or folders of them
     #[arg(required = true, value_name = "DIR|FILE")]
     shards: Vec<PathBuf>,
-    /// File of the rows [default: standard output].
+    /// File for the rows [default: standard output]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
@@ -64,7 +61,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let digest = plan.digest(&context.configuration)?;
     let part = options.shard.unwrap_or(Shard { shard: 1, of: 1 });
     if let (Some(_), Some(folder)) = (options.shard, &options.out) {
-        // A folder that cannot be written is better known before hours of play than after them.
+        // Report an unwritable folder before hours of play, not after them.
         std::fs::create_dir_all(folder)
             .map_err(|error| Failure::failed(format!("{}: {error}", folder.display())))?;
     }
@@ -75,7 +72,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     for (number, result) in numbers.iter().zip(&results) {
         text += &as_csv(&rows(&plan, *number, result))?;
     }
-    let kept = "the runs are kept, and the same command goes on";
+    let kept = "the finished runs are saved, and the same command continues";
     match (&options.out, options.shard) {
         (None, _) if options.output.is_of_rows() => {
             warn(&played_alike(&plan, &results));
@@ -95,29 +92,28 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     }
 }
 
-/// Prints warnings on standard error.
 fn warn(warnings: &[String]) {
     warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
 }
 
-/// What is written replaces neither the study file nor something else that is written.
+/// Checks that no output replaces the study file or another output.
 fn check_places(options: &Options) -> Result<(), Failure> {
     let graphs = options.output.graphs();
     for (name, place) in [("--out", options.out.as_deref()), ("--svg", graphs)] {
         if place.is_some_and(|place| is_same_file(place, &options.file)) {
-            let problem = format!("{name} names the study file itself, which would be replaced");
+            let problem = format!("{name} is the study file itself, which would be overwritten");
             return Err(Failure::usage(problem));
         }
     }
     match (&options.out, graphs) {
         (Some(rows), Some(graphs)) if is_same_file(rows, graphs) => {
-            Err(Failure::usage("--out and --svg name the same file: one would replace the other"))
+            Err(Failure::usage("--out and --svg name the same file: one would overwrite the other"))
         }
         _ => Ok(()),
     }
 }
 
-/// The file in which a study, or a shard of it, keeps its runs: one for each program that may write at the same time.
+/// Returns the file for results of a study or shard. Each program that may write at the same time has its own file.
 fn kept_in(
     context: &Context,
     plan: &StudyPlan,
@@ -132,10 +128,10 @@ fn kept_in(
 pub fn merge(options: &MergeOptions) -> Result<(), Failure> {
     let shards = Shards::of(&options.shards).map_err(|error| Failure::failed(error.to_string()))?;
     match &options.out {
-        Some(file) if shards.files().iter().any(|shard| is_same_file(shard, file)) => {
-            Err(Failure::usage(format!("{} is one of the shards, which would be replaced", file.display())))
-        }
-        Some(file) => write_file(file, Some("the shards are as they were"), |out| shards.write(out)),
+        Some(file) if shards.files().iter().any(|shard| is_same_file(shard, file)) => Err(Failure::usage(
+            format!("{} is one of the shards, which would be overwritten", file.display()),
+        )),
+        Some(file) => write_file(file, Some("the shards are unchanged"), |out| shards.write(out)),
         None => {
             let mut out = BufWriter::new(io::stdout().lock());
             match shards.write(&mut out).and_then(|()| out.flush()) {

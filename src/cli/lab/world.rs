@@ -1,4 +1,4 @@
-//! The parameters of commands that play nothing.
+//! Parameters for commands that play nothing.
 
 use clap::Args;
 
@@ -7,30 +7,30 @@ use crate::cli::{Context, Failure};
 use crate::lab::Params;
 use crate::record::folder::configuration::DEFAULT_SCENARIO;
 
-/// Which parameters are in force.
+/// Options that select parameters.
 #[derive(Debug, Args)]
 pub struct WorldOptions {
-    /// Scenario whose parameters are in force.
+    /// Scenario whose parameters are used
     #[arg(long, default_value = DEFAULT_SCENARIO, value_name = "NAME")]
     scenario: String,
-    /// Set a parameter; can be repeated.
+    /// Set a parameter; can be repeated
     #[arg(long, value_name = "TABLE.KEY=VALUE", value_parser = parse_override)]
     set: Vec<(String, String)>,
 }
 
 impl WorldOptions {
-    /// The parameters.
+    /// Returns the parameters.
     ///
     /// # Errors
-    /// There is no such scenario, or a parameter is wrong.
+    /// There is no such scenario, or a parameter is invalid.
     pub fn params(&self, context: &Context) -> Result<Params, Failure> {
         self.terms(context).map(|(_, params)| params)
     }
 
-    /// The last day of a run, and the parameters.
+    /// Returns the last day of a run and the parameters.
     ///
     /// # Errors
-    /// The same.
+    /// As [`WorldOptions::params`].
     pub fn terms(&self, context: &Context) -> Result<(u32, Params), Failure> {
         let scenario = context.configuration.scenario(&self.scenario)?;
         let params = context.configuration.parameters(&scenario, &self.set, true)?;

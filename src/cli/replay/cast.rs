@@ -1,4 +1,4 @@
-//! `novamind replay RUN --cast FILE`: the replay as a recording that terminal players show.
+//! `novamind replay RUN --cast FILE`: records the replay for terminal players.
 
 use std::path::Path;
 use std::time::Duration;
@@ -19,30 +19,30 @@ use crate::tui::asciicast::Asciicast;
 use crate::tui::glyphs::Glyphs;
 use crate::worker::request::Recorded;
 
-/// How long the frame after an action stays, and the one after a week, at speed 1.
+/// Duration of the frame after an action and after a week, at speed 1.
 const AFTER_ACTION: Duration = Duration::from_millis(700);
 const AFTER_WEEK: Duration = Duration::from_millis(2500);
 
 /// Options of a recording.
 #[derive(Debug, Args)]
 pub struct RecordingOptions {
-    /// With --cast: so many times as fast, from 0.1 to 100.
+    /// With --cast: speed factor from 0.1 to 100
     #[arg(long, default_value_t = 1.0, value_name = "X", requires = "cast", value_parser = speed)]
     speed: f64,
-    /// With --cast: columns and rows of the window.
+    /// With --cast: columns and rows of the window
     #[arg(long, default_value = "120x40", requires = "cast", value_parser = size)]
     size: (u16, u16),
-    /// With --cast: theme.
+    /// With --cast: theme
     #[arg(long, default_value = "dark", value_name = "NAME", requires = "cast")]
     theme: String,
 }
 
 fn speed(text: &str) -> Result<f64, String> {
     let speed = text.parse().ok().filter(|speed: &f64| (0.1..=100.0).contains(speed));
-    speed.ok_or_else(|| "a speed is a number from 0.1 to 100".to_owned())
+    speed.ok_or_else(|| "the speed must be from 0.1 to 100".to_owned())
 }
 
-/// Records the weeks of a replay into a file: one week, from the first to the last of some, or all.
+/// Records the weeks of a replay to a file: one week, a range, or all.
 pub fn record(
     file: &Path,
     recorded: Recorded,
@@ -73,7 +73,7 @@ pub fn record(
     print(&format!("{}: {frames} frames\n", file.display()))
 }
 
-/// The recording, and of how many frames it is.
+/// Returns the recording and its number of frames.
 fn recording(
     console: &mut Headless,
     recorded: Recorded,
@@ -90,11 +90,11 @@ fn recording(
     let mut cast = Asciicast::new(options.size, &title);
     let mut frames = 0;
     loop {
-        let place = console.place().ok_or_else(|| Failure::failed("nothing is replayed"))?;
+        let place = console.place().ok_or_else(|| Failure::failed("there is nothing to replay"))?;
         let (line, week, weeks, at_end) = (place.line, place.week, place.weeks, place.at_end);
         if first > weeks {
             return Err(Failure::usage(format!(
-                "week {first} is not recorded; the record has {weeks} weeks"
+                "week {first} is not in the record, which has {weeks} weeks"
             )));
         }
         let is_over = at_end || week >= last;

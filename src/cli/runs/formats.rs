@@ -1,4 +1,4 @@
-//! `novamind runs export --format`: a run as scripts, as an agent's trajectory, as an evaluation log.
+//! `novamind runs export --format`: writes a run as a script, an agent trajectory or an evaluation log.
 
 use std::path::{Path, PathBuf};
 
@@ -13,27 +13,27 @@ use crate::report::transcript::{
     Surroundings, Transcript, atif, inspect, inspect_file_name, plain_script, python_script,
 };
 
-/// What a run is written as.
+/// Format of an exported run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum ExportFormat {
-    /// A sealed archive: everything, to be checked and imported again.
+    /// A sealed archive with everything, to be verified and imported
     Archive,
-    /// The decisions as a script of plain mode and as a Python program over the client: play.txt and play.py in a folder.
+    /// The decisions as a plain-mode script and as a Python program for the client: play.txt and play.py in a folder
     Script,
-    /// The Agent Trajectory Interchange Format, version 1.8.
+    /// The Agent Trajectory Interchange Format, version 1.8
     Atif,
-    /// An evaluation log that Inspect reads.
+    /// An evaluation log for Inspect
     Inspect,
 }
 
-/// Writes the run of a folder in a format. A file that is there stays.
+/// Writes the run of a folder in a format. Never replaces an existing file.
 pub fn write(folder: &Path, format: ExportFormat, out: &Path, context: &Context) -> Result<(), Failure> {
     let manifest = manifest_of(folder)?;
     let (made, files) = match format {
         ExportFormat::Script => (Some(out), vec![out.join("play.txt"), out.join("play.py")]),
         ExportFormat::Inspect if has_ending(out, "eval") => {
             return Err(Failure::usage(format!(
-                "{}: the log is written as JSON, and Inspect expects an archive in a file that ends in .eval: name a file that \
+                "{}: the log is written as JSON, but Inspect expects an archive in a file that ends in .eval: give a file that \
                  ends in .json, or a folder. Nothing was written",
                 out.display()
             )));
@@ -49,7 +49,7 @@ pub fn write(folder: &Path, format: ExportFormat, out: &Path, context: &Context)
     }
     if let (Some(lesson), ExportFormat::Script) = (&manifest.lesson, format) {
         return Err(Failure::usage(format!(
-            "run {} belongs to lesson {}, whose start no script makes; atif and inspect tell it",
+            "run {} belongs to lesson {}, whose start a script cannot create; use --format atif or inspect",
             manifest.id, lesson.name
         )));
     }
@@ -86,7 +86,7 @@ fn has_ending(file: &Path, ending: &str) -> bool {
     file.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending))
 }
 
-/// What whoever plays is told.
+/// Returns the page that the player of the run received.
 #[cfg(feature = "server")]
 fn surroundings(run: &Transcript) -> Surroundings {
     let of =
@@ -94,7 +94,7 @@ fn surroundings(run: &Transcript) -> Surroundings {
     Surroundings { page: crate::server::page(&of), tools: crate::server::functions(&run.numbers) }
 }
 
-/// Without the server's page, the list of tools.
+/// Returns only the list of tools, because the page is part of the server.
 #[cfg(not(feature = "server"))]
 fn surroundings(_: &Transcript) -> Surroundings {
     Surroundings { page: crate::tools::catalogue::overview(), tools: Vec::new() }

@@ -1,4 +1,4 @@
-//! `novamind runs`: list, show, end, delete, export, import.
+//! `novamind runs`: list, show, end, recover, delete, export and import runs.
 
 mod formats;
 #[cfg(feature = "server")]
@@ -23,73 +23,71 @@ use crate::record::trajectory::{Record, Trajectory};
 use crate::report::origin_in_words;
 use crate::session::{end_run, rescue};
 
-/// Options of `runs`.
 #[derive(Debug, Args)]
 pub struct Options {
     #[command(subcommand)]
     command: Option<RunsCommand>,
-    /// Only runs of this participant.
+    /// Only runs of this participant
     #[arg(long, value_name = "LABEL")]
     participant: Option<String>,
-    /// Print as JSON.
-    // A name of its own: `play`, whose options stand before a command too, has one called json.
+    /// Print as JSON
+    // A separate name is needed because `play`, whose options may precede a command, has an option `json`, too.
     #[arg(id = "runs_json", long = "json", global = true)]
     json: bool,
 }
 
 #[derive(Debug, Subcommand)]
 enum RunsCommand {
-    /// List the runs, the last played first; `runs` alone does the same.
+    /// List the runs, the last played first; `runs` alone does the same
     List {
-        /// Only runs of this participant.
+        /// Only runs of this participant
         #[arg(long, value_name = "LABEL")]
         participant: Option<String>,
     },
-    /// Show what a run is and how far it has come.
+    /// Show the settings and the progress of a run
     Show {
-        /// Run, or `latest`: the newest.
+        /// Run, or `latest` for the newest
         run: String,
     },
-    /// Print the folder of a run.
+    /// Print the folder of a run
     Path {
-        /// Run, or `latest`: the newest.
+        /// Run, or `latest` for the newest
         run: String,
     },
-    /// End an unfinished run for good.
+    /// End an unfinished run permanently
     End {
-        /// Run, or `latest`: the newest unfinished one.
+        /// Run, or `latest` for the newest unfinished one
         run: String,
     },
-    /// Open the good beginning of a damaged run as a branch; the run itself is not touched.
+    /// Recover the undamaged prefix of a run as a new branch; the run itself does not change
+    #[command(name = "recover", alias = "rescue")]
     Rescue {
-        /// Run.
+        /// Run
         run: String,
     },
-    /// Delete a run with all its files.
+    /// Delete a run with all its files
     Delete {
-        /// Run.
+        /// Run
         run: String,
-        /// Confirm the deletion.
+        /// Confirm the deletion
         #[arg(long)]
         yes: bool,
     },
-    /// Seal a run into one file to hand over, or all runs with tables of their runs and weeks.
+    /// Export a run to a sealed archive, or all runs with tables of runs and weeks
     Export(transfer::Export),
-    /// Import the run of an archive, after checking every byte of it, or play a transcript that was made elsewhere.
+    /// Import the run of an archive after verifying every byte, or play an external transcript
     Import(transfer::Import),
-    /// Explain every column of the tables that `export --all` writes.
+    /// Explain every column of the tables that `export --all` writes
     Columns,
-    /// Print the JSON Schema of a line of a trajectory.
+    /// Print the JSON Schema of a line of a trajectory
     Schema,
 }
 
-/// What a line of a trajectory may be.
 const SCHEMA: &str = include_str!("../../../assets/trajectory.schema.json");
 
-/// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let runs = context.runs()?;
-    // Participants see their own; whoever is nobody in particular sees everything.
+    // With a label, only the runs of that participant; without one, all runs.
     let folders = match context.participant {
         Some(_) => vec![runs.clone()],
         None => all_run_folders(&runs),
@@ -104,13 +102,13 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         Some(RunsCommand::End { run }) => {
             let id = id_of(&find_run(&runs, run)?);
             end_run(&runs, &id)?;
-            print(&format!("run {id} has ended; you can still read it\n"))
+            print(&format!("ended run {id}; you can still view it\n"))
         }
         Some(RunsCommand::Rescue { run }) => {
             let folder = find_run_to_read(&runs, run)?;
             let (found, whole) = (rescue(&folder, &context.seal_key()?)?, id_of(&folder));
             print(&format!(
-                "run {} holds lines 1 to {} of run {whole} and stands at day {}, mode {}\n\
+                "run {} contains lines 1 to {} of run {whole} and is on day {}, mode {}\n\
                  problem: {}\nrun {whole} is unchanged; `novamind play --run {}` continues\n",
                 found.run, found.lines, found.day, found.mode, found.problem, found.run
             ))
@@ -118,12 +116,12 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         Some(RunsCommand::Delete { run, yes }) => {
             if !yes {
                 let folder = find_run(&runs, run)?;
-                let message = format!("this deletes {} for good; add --yes to do it", folder.display());
+                let message = format!("this permanently deletes {}; add --yes to confirm", folder.display());
                 return Err(Failure::usage(message));
             }
             let id = id_of(&find_run(&runs, run)?);
             delete_run(&runs, &id)?;
-            print(&format!("run {id} is deleted\n"))
+            print(&format!("deleted run {id}\n"))
         }
         Some(RunsCommand::Export(export)) => export.run(&folders, options.json, context),
         Some(RunsCommand::Import(import)) => import.run(&runs, options.json, context),
@@ -132,7 +130,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     }
 }
 
-/// Prints what a run is; as JSON, with the hash of its last recorded state and its score.
+/// Prints the summary of a run; as JSON with its score and the hash of its last recorded state.
 fn show(folders: &[PathBuf], run: &str, json: bool) -> Result<(), Failure> {
     let folder = find_in(folders, run)?;
     let text = manifest_text(&folder)?;
@@ -140,7 +138,7 @@ fn show(folders: &[PathBuf], run: &str, json: bool) -> Result<(), Failure> {
     let summary = list_all(folders)?.into_iter().map(|(_, run)| run).find(|run| run.id == id);
     if json {
         let mut shown = serde_json::to_value(&summary).unwrap_or_default();
-        // The summary names what keeps a damaged trajectory from being read.
+        // The summary reports the damage of a trajectory that cannot be read.
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).ok();
         let lines = trajectory.iter().flat_map(|trajectory| trajectory.lines.iter().rev());
         let mut hashes = lines.filter_map(|line| match &line.record {
@@ -162,7 +160,7 @@ fn show(folders: &[PathBuf], run: &str, json: bool) -> Result<(), Failure> {
     ))
 }
 
-/// Every run of some folders, each with its own.
+/// Returns every run of the folders, with its folder.
 pub(super) fn list_all(folders: &[PathBuf]) -> Result<Vec<(PathBuf, RunSummary)>, Failure> {
     let mut all = Vec::new();
     for folder in folders {
@@ -172,16 +170,16 @@ pub(super) fn list_all(folders: &[PathBuf]) -> Result<Vec<(PathBuf, RunSummary)>
     Ok(all)
 }
 
-/// A run's folder has its number for a name.
+/// Returns the id of a run, which is the name of its folder.
 fn id_of(folder: &Path) -> String {
     folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// The folder of a run in one of some folders.
+/// Finds the folder of a run in several folders of runs.
 pub(super) fn find_in(folders: &[PathBuf], run: &str) -> Result<PathBuf, Failure> {
     let mut found = folders.iter().map(|folder| find_run_to_read(folder, run));
     let first = found.next().ok_or_else(|| Failure::usage("there is no folder of runs"))?;
-    // The first folder's answer tells best why there is none.
+    // The error for the first folder is the most useful one.
     first.or_else(|error| found.find_map(Result::ok).ok_or(error)).map_err(Failure::from)
 }
 

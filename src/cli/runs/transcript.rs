@@ -1,4 +1,4 @@
-//! `novamind runs import --transcript`: what was played elsewhere becomes a run.
+//! `novamind runs import --transcript`: plays an external transcript in a new run.
 
 use std::path::Path;
 
@@ -10,12 +10,12 @@ use crate::report::count;
 use crate::server::ForeignTranscript;
 use crate::session::{NewRun, Session};
 
-/// Largest transcript, bytes: 500 days of an agent are a few megabytes.
+/// Largest transcript in bytes; 500 days of an agent take a few megabytes.
 const LARGEST: u64 = 512 << 20;
-/// Answers that differ are listed up to this many.
+/// Largest number of differing answers that are listed.
 const LISTED: usize = 10;
 
-/// Plays a transcript in a new run. What the options do not say of it, the transcript says.
+/// Plays a transcript in a new run. The transcript supplies the settings that the options do not.
 pub fn import_transcript(file: &Path, made_of: &NewRunOptions, context: &Context) -> Result<(), Failure> {
     let named = |why: String| Failure::failed(format!("{}: {why}", file.display()));
     let length = std::fs::metadata(file).map_err(|error| named(error.to_string()))?.len();
@@ -36,7 +36,7 @@ pub fn import_transcript(file: &Path, made_of: &NewRunOptions, context: &Context
         ..asked
     };
     if new.seed.is_none() {
-        return Err(Failure::usage("the transcript names no seed: name it with --seed"));
+        return Err(Failure::usage("the transcript has no seed: give it with --seed"));
     }
     let mut session = Session::create(new, &context.configuration)?;
     let bar = progress_bar(read.calls.len() as u64, "calls");
@@ -46,23 +46,23 @@ pub fn import_transcript(file: &Path, made_of: &NewRunOptions, context: &Context
     let (run, day, hash) = (session.manifest().id.clone(), session.day(), session.state_hash().0);
     print(&format!("run {run}: {} calls, day {day}, state {hash}\n", played.made))?;
     for (place, tool, said) in played.otherwise.iter().take(LISTED) {
-        print(&format!("step {place}: {tool} is answered otherwise than in the transcript: {said}\n"))?;
+        print(&format!("step {place}: the answer to {tool} differs from the transcript: {said}\n"))?;
     }
     if played.not_run > 0 {
         let scripts = count(played.not_run as u32, "script");
-        print(&format!("{scripts} in Python not run: what a transcript holds is never started\n"))?;
+        print(&format!("{scripts} in Python not run: scripts of a transcript are never executed\n"))?;
     }
     let ends_otherwise = read.state_hash.as_ref().is_some_and(|own| *own != hash);
     match played.otherwise.len() as u32 {
         0 if ends_otherwise => Err(Failure::failed(
-            "every call is answered as in the transcript, which ended in another state: its program or its parameters \
-             were others; the run is kept",
+            "every answer agrees with the transcript, but the final state differs: its program or its parameters \
+             were different; the run is kept",
         )),
         0 => Ok(()),
         calls => Err(Failure::failed(format!(
-            "{} answered otherwise than in the transcript{}; the run is kept",
+            "{} with an answer that differs from the transcript{}; the run is kept",
             count(calls, "call"),
-            if ends_otherwise { ", which ended in another state" } else { "" }
+            if ends_otherwise { ", and the final state differs" } else { "" }
         ))),
     }
 }

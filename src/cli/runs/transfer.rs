@@ -1,4 +1,4 @@
-//! `novamind runs export` and `import`: runs as sealed archives, and their tables.
+//! `novamind runs export` and `import`: sealed archives of runs, and tables of many runs.
 
 use std::path::{Path, PathBuf};
 
@@ -26,42 +26,40 @@ use crate::session::archive::close_workshops;
 use crate::session::{Export as Sealing, Imported, LabKey, LabPublicKey, Seal, SealKey, import_run};
 use novamind_study::{FoundVisit, VISITS, visits};
 
-/// Options of `runs export`.
 #[derive(Debug, Args)]
 pub struct Export {
-    /// Run, or `latest`: the newest.
+    /// Run, or `latest` for the newest
     #[arg(required_unless_present = "all", conflicts_with = "all")]
     run: Option<String>,
-    /// Every run, with the tables of their runs, weeks, forecasts, queries, events, answers and notes.
+    /// Export all runs, with tables of runs, weeks, forecasts, queries, events, answers and notes
     #[arg(long)]
     all: bool,
-    /// With --all: only runs of this participant.
+    /// With --all: only runs of this participant
     #[arg(long, value_name = "LABEL", requires = "all")]
     participant: Option<String>,
-    /// File of the archive, compressed when its name ends in .gz or .tgz; with --all or --format script a folder. With --format
-    /// inspect a file that ends in .json, or a folder, in which the log gets the name that Inspect expects.
+    /// Archive file, compressed if its name ends in .gz or .tgz; a folder with --all or --format script; a .json file or a folder with
+    /// --format inspect, which chooses the file name that Inspect expects
     #[arg(long, value_name = "PATH")]
     out: PathBuf,
-    /// What is written: the sealed archive, or the run in a format of programs that study or train agents.
+    /// Format: the sealed archive, or a format of other programs
     #[arg(long, value_enum, default_value = "archive", conflicts_with_all = ["all", "lab_key"])]
     format: ExportFormat,
-    /// Sign the archives with this key of a lab [default: lab.key in the folder of the study, where it is there].
+    /// Sign the archives with this lab key [default: lab.key in the folder of the study, if it exists]
     #[arg(long, value_name = "FILE")]
     lab_key: Option<PathBuf>,
 }
 
-/// Options of `runs import`.
 #[derive(Debug, Args)]
 pub struct Import {
-    /// Archives, as `runs export` makes them.
+    /// Archives that `runs export` wrote
     #[cfg_attr(feature = "server", arg(required_unless_present = "transcript"))]
     #[cfg_attr(not(feature = "server"), arg(required = true))]
     files: Vec<PathBuf>,
-    /// Import one archive under this name, beside another record of the same run.
+    /// Import one archive under this name, next to another record of the same run
     #[arg(long, value_name = "NAME")]
     under: Option<String>,
-    /// Play a transcript that was made elsewhere in a new run: a trajectory of the Agent Trajectory Interchange Format, a log of
-    /// Inspect (.eval or .json), or lines with a tool and its args each.
+    /// Play an external transcript in a new run: a trajectory in the Agent Trajectory Interchange Format, an Inspect log (.eval or
+    /// .json), or JSON lines with a tool and its args
     #[cfg(feature = "server")]
     #[arg(long, value_name = "FILE", conflicts_with_all = ["files", "under"])]
     transcript: Option<PathBuf>,
@@ -70,17 +68,16 @@ pub struct Import {
     made_of: NewRunOptions,
 }
 
-/// What signs archives, and what seals the snapshots of runs besides the runs.
+/// The keys that sign archives and seal snapshots.
 type Keys = (Option<LabKey>, SealKey);
 
 impl Export {
-    /// Runs the command.
     pub fn run(&self, folders: &[PathBuf], json: bool, context: &Context) -> Result<(), Failure> {
         if let (Some(run), true) = (&self.run, self.format != ExportFormat::Archive) {
             return formats::write(&find_in(folders, run)?, self.format, &self.out, context);
         }
         tidy_up_on_signals();
-        // Before anything is simulated again.
+        // Checked before the run is simulated again.
         let keys = (context.lab_key(self.lab_key.as_deref())?, context.seal_key()?);
         match &self.run {
             Some(run) => self.export_one(&find_in(folders, run)?, &keys, json),
@@ -91,7 +88,7 @@ impl Export {
     fn export_one(&self, folder: &Path, (key, seal_key): &Keys, json: bool) -> Result<(), Failure> {
         let beside = folder_of(&self.out);
         if self.out.exists() {
-            // Said before the run is simulated again, not after.
+            // Reported before the run is simulated again, not after it.
             let message = format!("{} already exists: choose another name, or remove it", self.out.display());
             return Err(Failure::failed(message));
         }
@@ -113,7 +110,7 @@ impl Export {
 
     fn export_all(&self, folders: &[PathBuf], keys: &Keys, json: bool) -> Result<(), Failure> {
         let mut list = list_all(folders)?;
-        // A damaged run does not say whose it is, so it is always named.
+        // A damaged run does not name its participant, so it is always reported.
         let label = self.participant.as_deref();
         list.retain(|(_, run)| {
             run.problem.is_some() || label.is_none_or(|label| run.participant.as_deref() == Some(label))
@@ -175,7 +172,7 @@ impl Export {
         }
     }
 
-    /// One run of many. An older archive of it makes room: trajectories only grow.
+    /// Exports one of many runs. Replaces an older archive of it, because trajectories only grow.
     fn export_into(
         &self,
         folder: &Path,
@@ -189,7 +186,7 @@ impl Export {
     }
 }
 
-/// The lines of the lists of visits in folders of runs; of one label, where one is named.
+/// Returns the visit records in the folders of runs, of one label if given.
 fn visits_in(folders: &[PathBuf], label: Option<&str>) -> Vec<FoundVisit> {
     let of_folder = |folder: &PathBuf| {
         let lines = visits(&folder.join(VISITS)).into_iter();
@@ -200,7 +197,7 @@ fn visits_in(folders: &[PathBuf], label: Option<&str>) -> Vec<FoundVisit> {
     all.filter(|visit| label.is_none_or(|label| visit.line.label == label)).collect()
 }
 
-/// Writes every table into a folder, as comma-separated values.
+/// Writes every table to a folder as comma-separated values.
 pub fn write_tables(tables: StudyTables, folder: &Path) -> Result<(), Failure> {
     for (name, rows) in tables.into_files() {
         let path = folder.join(format!("{name}.csv"));
@@ -209,12 +206,12 @@ pub fn write_tables(tables: StudyTables, folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A signal that ends the program takes with it what is half made: nothing hidden stays on a stick.
+/// Removes incomplete archives when a signal ends the program, so that no hidden data is left on the target medium.
 pub fn tidy_up_on_signals() {
     #[cfg(unix)]
     {
         use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-        // Where signals cannot be watched they end the program as ever.
+        // Without signal handlers, signals end the program at once.
         let Ok(mut signals) = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGHUP]) else { return };
         std::thread::spawn(move || {
             if let Some(signal) = signals.forever().next() {
@@ -225,9 +222,9 @@ pub fn tidy_up_on_signals() {
     }
 }
 
-/// Rows as comma-separated values, whose texts no reader takes for formulas or commands.
+/// Formats rows as comma-separated values. Texts are escaped so that no program reads them as formulas or commands.
 pub fn as_csv(rows: &[Vec<String>]) -> Result<String, Failure> {
-    let wrong = |error: String| Failure::failed(format!("the table cannot be written as CSV: {error}"));
+    let wrong = |error: String| Failure::failed(format!("cannot write the table as CSV: {error}"));
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {
         writer
@@ -238,7 +235,7 @@ pub fn as_csv(rows: &[Vec<String>]) -> Result<String, Failure> {
     String::from_utf8(bytes).map_err(|error| wrong(error.to_string()))
 }
 
-/// Prints what every column means.
+/// Prints the meaning of every column.
 pub fn explain_columns(json: bool) -> Result<(), Failure> {
     if json {
         let all: serde_json::Map<String, Value> =
@@ -248,7 +245,7 @@ pub fn explain_columns(json: bool) -> Result<(), Failure> {
     print(&markdown_table(&columns_table()))
 }
 
-/// Rows as a table of Markdown, aligned, the first of them its head.
+/// Formats rows as an aligned Markdown table. The first row is the header.
 fn markdown_table(rows: &[Vec<String>]) -> String {
     let columns = rows.first().map_or(0, Vec::len);
     let width = |at: usize| rows.iter().map(|row| row[at].chars().count()).max().unwrap_or(0);
@@ -279,7 +276,7 @@ fn told(seal: &Seal, archive: &Path, day: u32, key: Option<&LabKey>) -> Value {
 }
 
 impl Import {
-    /// Runs the command. One archive that cannot be taken does not keep the others out.
+    /// Imports the archives. A failure does not prevent the import of the others.
     pub fn run(&self, runs: &Path, json: bool, context: &Context) -> Result<(), Failure> {
         tidy_up_on_signals();
         #[cfg(feature = "server")]
@@ -287,7 +284,7 @@ impl Import {
             Some(file) => return import_transcript(file, &self.made_of, context),
             None if self.made_of.ask_for_one() => {
                 return Err(Failure::usage(
-                    "an archive says what its run is; options of a run go with --transcript",
+                    "an archive contains the options of its run; options of a run need --transcript",
                 ));
             }
             None => {}
@@ -295,7 +292,7 @@ impl Import {
         #[cfg(not(feature = "server"))]
         let _ = context;
         if self.under.is_some() && self.files.len() > 1 {
-            return Err(Failure::usage("--under names one run: import one archive with it"));
+            return Err(Failure::usage("--under needs exactly one archive"));
         }
         #[cfg(feature = "server")]
         self.refuse_logs()?;
@@ -308,7 +305,7 @@ impl Import {
                 Err(error) => failures.push(error.into()),
             }
         }
-        // The last one said is the one that names the exit code: the highest.
+        // The failure with the highest exit code determines the exit code.
         failures.sort_by_key(|failure| std::cmp::Reverse(failure.code));
         let mut failures = failures.into_iter();
         match failures.next() {
@@ -326,13 +323,13 @@ impl Import {
 
 #[cfg(feature = "server")]
 impl Import {
-    /// Refuses files that are read with `--transcript`.
+    /// Rejects files that need `--transcript`.
     fn refuse_logs(&self) -> Result<(), Failure> {
         let is_log = |file: &&PathBuf| file.extension().is_some_and(|own| own == "eval" || own == "json");
         let Some(log) = self.files.iter().find(is_log) else { return Ok(()) };
         Err(Failure::usage(format!(
-            "{} is not an archive of a run: `novamind runs import --transcript {}` plays the calls of a log or trajectory in a \
-             new run. Nothing was imported",
+            "{} is not an archive of a run. To play the calls of a log or trajectory in a new run, use `novamind runs import --transcript {}`. \
+             Nothing was imported",
             log.display(),
             for_shell(log)
         )))
@@ -347,7 +344,7 @@ fn import_answer(
     under: Option<&str>,
 ) -> String {
     let (new, remark) = match imported {
-        Imported::New(_) => (true, "imported; its database is built when it is first opened"),
+        Imported::New(_) => (true, "imported; its database is built when you first open it"),
         Imported::Same { other_memo: false } => (false, "already exists, line for line; nothing was changed"),
         Imported::Same { other_memo: true } => {
             (false, "already exists, line for line, with other notes; nothing was changed")

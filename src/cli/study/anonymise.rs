@@ -1,4 +1,4 @@
-//! `novamind study anonymise`: the tables of a study without what tells who took part.
+//! `novamind study anonymize`: writes the tables of a study without data that identifies participants.
 
 use std::fs::File;
 use std::io::Write;
@@ -12,33 +12,31 @@ use crate::report::anonymised::{Anonymiser, Anonymous, LINKS, NamedTable, Texts}
 use crate::report::count;
 use crate::report::tables::headings;
 
-/// Options of `study anonymise`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Folder with the tables of `study collect` or `runs export --all`.
+    /// Folder with the tables of `study collect` or `runs export --all`
     #[arg(value_name = "FOLDER")]
     folder: PathBuf,
-    /// New folder for the anonymous tables.
+    /// New folder for the anonymous tables
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// File with the secret that new names are made with; it is made if it is missing. The table of old and new names is
-    /// written beside it. Keep both.
+    /// File with the secret that determines new names, created if it does not exist; the table of old and new names is written next
+    /// to it. Keep both
     #[arg(long, value_name = "FILE")]
     secret: PathBuf,
-    /// Leave the lengths of texts that people wrote.
+    /// Leave out the lengths of texts that people wrote
     #[arg(long)]
     mask: bool,
-    /// Further columns to leave out of every table, as `seed,condition`.
+    /// Further columns to leave out of every table, for example `seed,condition`
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',')]
     without: Vec<String>,
 }
 
-/// Runs the command.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let links_path = options.secret.with_extension("links.csv");
     let inside = |path: &Path| path.parent().is_some_and(|folder| folder == options.out);
     if inside(&options.secret) {
-        return Err(Failure::usage("the secret must not lie in the folder that is given away"));
+        return Err(Failure::usage("the secret must not be in the output folder"));
     }
     let tables =
         headings().iter().map(|(name, _)| read(&options.folder, name)).collect::<Result<Vec<_>, _>>()?;
@@ -52,7 +50,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         |path: &Path, error: &std::io::Error| Failure::failed(format!("{}: {error}", path.display()));
     if options.out.exists() {
         let message =
-            format!("{} already exists: what lies in it might be given away too", options.out.display());
+            format!("{} already exists: files in it could be given away by mistake", options.out.display());
         return Err(Failure::failed(message));
     }
     std::fs::create_dir_all(&options.out).map_err(|error| failed(&options.out, &error))?;
@@ -73,15 +71,15 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         cells.map(Clone::clone).to_vec()
     }));
     let text = as_csv(&rows)?;
-    // It holds what the secret does: old and new names.
+    // It identifies participants, as the secret does.
     let _ = std::fs::remove_file(&links_path);
     own_file(&links_path)
         .and_then(|mut file| file.write_all(text.as_bytes()))
         .map_err(|error| failed(&links_path, &error))?;
     let told_apart = smallest_group.map_or(String::new(), |(size, values)| {
         format!(
-            "the smallest group of sessions with equal seed and condition has {size} ({values}); --without seed,condition \
-             leaves columns out\n"
+            "the smallest group of sessions with the same seed and condition has {size} ({values}); --without seed,condition \
+             leaves these columns out\n"
         )
     });
     print(&format!(
@@ -93,7 +91,6 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     ))
 }
 
-/// A table of a folder.
 fn read(folder: &Path, name: &str) -> Result<NamedTable, Failure> {
     let path = folder.join(format!("{name}.csv"));
     let wrong = |error: csv::Error| Failure::unreadable(format!("{}: {error}", path.display()));
@@ -102,20 +99,21 @@ fn read(folder: &Path, name: &str) -> Result<NamedTable, Failure> {
     Ok((name.to_owned(), rows.collect::<Result<Vec<_>, Failure>>()?))
 }
 
-/// The secret of a file, which is made if it is missing: 64 hexadecimal digits.
+/// Reads the secret of a file, 64 hexadecimal digits, or creates it.
 fn secret_of(path: &Path) -> Result<[u8; 32], Failure> {
     let failed = |error: std::io::Error| Failure::failed(format!("{}: {error}", path.display()));
     match std::fs::read_to_string(path) {
         Ok(text) => {
             let hash = blake3::Hash::from_hex(text.trim()).map_err(|_| {
-                Failure::usage(format!("{}: a secret is 64 hexadecimal digits", path.display()))
+                Failure::usage(format!("{}: a secret has 64 hexadecimal digits", path.display()))
             })?;
             Ok(*hash.as_bytes())
         }
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
             let mut secret = [0; 32];
-            getrandom::fill(&mut secret)
-                .map_err(|error| Failure::failed(format!("the system gives no random numbers ({error})")))?;
+            getrandom::fill(&mut secret).map_err(|error| {
+                Failure::failed(format!("the system returned no random numbers ({error})"))
+            })?;
             let text = format!("{}\n", blake3::Hash::from_bytes(secret).to_hex());
             own_file(path).and_then(|mut file| file.write_all(text.as_bytes())).map_err(failed)?;
             Ok(secret)
@@ -124,7 +122,7 @@ fn secret_of(path: &Path) -> Result<[u8; 32], Failure> {
     }
 }
 
-/// A new file that only its owner can read.
+/// Creates a file that only its owner can read.
 fn own_file(path: &Path) -> std::io::Result<File> {
     let mut options = File::options();
     options.write(true).create_new(true);

@@ -1,4 +1,4 @@
-//! `novamind study assign`: `assignment.csv`.
+//! `novamind study assign`: writes `assignment.csv`.
 
 use std::path::PathBuf;
 
@@ -9,27 +9,25 @@ use crate::record::error::RunError;
 use crate::record::files::write_whole;
 use novamind_study::{ASSIGNMENT_FILE, Assignment, Protocol, STUDY_FILE};
 
-/// Options of `study assign`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Folder of the study.
+    /// Folder of the study
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// How many participants.
+    /// Number of participants
     #[arg(long, value_name = "N", required_unless_present = "add", conflicts_with = "add")]
     participants: Option<u32>,
-    /// How many participants to add to the assignment that is there; its rows stay as they are.
+    /// Number of participants to add to the existing assignment, whose rows do not change
     #[arg(long, value_name = "N")]
     add: Option<u32>,
-    /// What labels begin with.
+    /// Prefix of the labels
     #[arg(long, value_name = "TEXT", default_value = "P")]
     prefix: String,
-    /// Seed of the randomisation: the same seed gives the same assignment [default: that of study.toml, or 1].
+    /// Seed of the randomization; equal seeds give equal assignments [default: that of study.toml, otherwise 1]
     #[arg(long, value_name = "N")]
     draw: Option<u64>,
 }
 
-/// Runs the command.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let path = options.folder.join(STUDY_FILE);
     let text = std::fs::read_to_string(&path).map_err(RunError::io(&path))?;
@@ -39,12 +37,12 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let (there, more) = match (options.add, Assignment::read(&options.folder)?) {
         (None, Some(_)) => {
             return Err(Failure::failed(format!(
-                "{} exists: participants may have begun with it. --add N adds to it; move it away to assign anew",
+                "{} exists, and participants may have started with it. Add participants with --add N, or move the file away to start over",
                 target.display()
             )));
         }
         (Some(_), None) => {
-            return Err(Failure::usage("there is no assignment yet: --participants N makes one"));
+            return Err(Failure::usage("there is no assignment yet: create one with --participants N"));
         }
         (add, there) => (there, add.or(options.participants).unwrap_or_default()),
     };
@@ -55,14 +53,14 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         && !made.places.starts_with(&there.places)
     {
         return Err(Failure::failed(format!(
-            "the rows of {} are not those that are drawn with {draw} for this protocol: give the --draw they were made with, or \
-             write the rows to add by hand. Nothing was changed",
+            "the rows of {} were not drawn with seed {draw} for this protocol: give the --draw that was used, or \
+             add the rows by hand. Nothing was changed",
             target.display()
         )));
     }
     let csv = made.as_csv();
     Assignment::parse(&target.display().to_string(), csv.as_bytes()).map_err(RunError::from)?;
-    // As a whole: participants may be coming meanwhile.
+    // The file is replaced atomically, because participants may start meanwhile.
     write_whole(&target, csv.as_bytes())?;
     print(&format!(
         "{}: {} participants in blocks of {cells}, drawn with {draw}\n{}{}",
@@ -71,7 +69,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         incomplete(made.places.len(), cells),
         if protocol.seeds.draw.is_none() && draw != 1 {
             format!(
-                "put draw = {draw} under [seeds] of {STUDY_FILE} before the first session: the protocol names it then\n"
+                "add draw = {draw} under [seeds] in {STUDY_FILE} before the first session, so that the protocol states it\n"
             )
         } else {
             String::new()
@@ -79,17 +77,17 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     ))
 }
 
-/// The seed of the randomisation; that of the protocol cannot be passed over.
+/// Returns the seed of the randomization. The option cannot override the protocol.
 fn drawn_with(options: &Options, protocol: &Protocol) -> Result<u64, Failure> {
     match (options.draw, protocol.seeds.draw) {
         (Some(asked), Some(own)) if asked != own => Err(Failure::usage(format!(
-            "{STUDY_FILE} says draw = {own}: leave --draw out, or change it there"
+            "{STUDY_FILE} sets draw = {own}: leave out --draw, or change it there"
         ))),
         (asked, own) => Ok(asked.or(own).unwrap_or(1)),
     }
 }
 
-/// The labels that are there, and so many more with numbers that go on.
+/// Returns the existing labels and `more` new ones with consecutive numbers.
 fn labels(there: Option<&Assignment>, more: u32, prefix: &str) -> Vec<String> {
     let known: Vec<String> =
         there.iter().flat_map(|own| own.places.iter().map(|place| place.label.clone())).collect();
@@ -103,12 +101,12 @@ fn labels(there: Option<&Assignment>, more: u32, prefix: &str) -> Vec<String> {
     known.iter().cloned().chain(new).collect()
 }
 
-/// What is missing of the last block.
+/// Returns a remark if the last block is incomplete.
 fn incomplete(places: usize, cells: usize) -> String {
     match places % cells {
         0 => String::new(),
         some => format!(
-            "the last block has {some} of {cells} cells: with {} participants every block is whole\n",
+            "the last block has {some} of {cells} cells; with {} participants every block is complete\n",
             places - some + cells
         ),
     }

@@ -1,4 +1,4 @@
-//! `novamind study audit`: contradictions within and between the records of a study.
+//! `novamind study audit`: finds contradictions within and between the records of a study.
 
 use std::path::PathBuf;
 
@@ -11,21 +11,20 @@ use crate::notation::printable;
 use crate::plain::table as aligned;
 use novamind_study::{Audit, AuditFinding, RunFacts, Study, audit};
 
-/// Options of `study audit`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Folder of the study.
+    /// Folder of the study
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// Folders of runs of its machines, or copies of them [default: that of this machine].
+    /// Folders of runs of its machines, or copies of them [default: that of this machine]
     #[arg(value_name = "RUNS")]
     machines: Vec<PathBuf>,
-    /// Print one JSON object.
+    /// Print one JSON object
     #[arg(long)]
     json: bool,
 }
 
-/// Runs the command; 1 where something was found.
+/// Runs the command. Fails with exit code 1 if there are findings.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let study = read_study(&options.folder)?;
     let machines = context.machines(&options.machines)?;
@@ -33,7 +32,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     if options.json {
         print(&(serde_json::to_string_pretty(&audit).unwrap_or_default() + "\n"))?;
     } else {
-        // Names of folders and lines of others may hold anything.
+        // Labels and records of others may contain control characters.
         print(&printable(&in_words(&study, &audit)))?;
     }
     match audit.findings.len() {
@@ -54,7 +53,7 @@ fn in_words(study: &Study, audit: &Audit) -> String {
         text += &told(finding);
     }
     if audit.findings.is_empty() {
-        text += "Nothing was found.\n";
+        text += "No findings.\n";
     }
     text
 }
@@ -70,7 +69,7 @@ fn told(finding: &AuditFinding) -> String {
     format!("{place}{}\n  {}\n", finding.kind.title(), finding.words)
 }
 
-/// The runs as a table.
+/// Returns the runs as a table.
 fn facts(runs: &[RunFacts]) -> Rows {
     let columns = [
         "participant",

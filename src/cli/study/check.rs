@@ -1,4 +1,4 @@
-//! `novamind study check`: the protocol, and the machine.
+//! `novamind study check`: checks the protocol and this machine.
 
 mod design;
 
@@ -8,24 +8,22 @@ use crate::cli::{Context, Failure, print};
 use crate::session::Machine;
 use novamind_study::{LAB_KEY_FILE, Moment, PracticeOffer, SEAL_KEY_FILE, Study};
 
-/// Free bytes that a machine should have: a session of a large company with its database.
+/// Free bytes that a session of a large company needs with its database.
 const ROOM: u64 = 2 << 30;
-/// Columns and rows of the smallest window.
+/// Columns and rows of the smallest supported window.
 const WINDOW: (u16, u16) = (60, 16);
 
-/// A point that was checked.
 struct Point {
     name: &'static str,
     outcome: Outcome,
 }
 
-/// What became of it.
 enum Outcome {
-    /// It is as it should be.
+    /// The point is in order.
     Fits(String),
-    /// Whoever runs the study should know it, and may want it so.
+    /// The experimenter should know it; it may be intended.
     Note(String),
-    /// No session should begin with it.
+    /// It must be fixed before a session starts.
     Wrong(String),
 }
 
@@ -79,14 +77,14 @@ pub fn run(folder: &Path, context: &Context) -> Result<(), Failure> {
     }
 }
 
-/// What seals snapshots here; a damaged key keeps the study from being read.
+/// Describes the keys of the study. A damaged key has already failed the reading of the study.
 fn keys(folder: &Path) -> &'static str {
     let is_here = |file: &str| folder.join(file).exists();
     match (is_here(SEAL_KEY_FILE), is_here(LAB_KEY_FILE)) {
         (true, false) => "seal.key seals snapshots",
         (true, true) => "seal.key seals snapshots; lab.key is here: keep it off the machines of participants",
-        (false, true) => "no seal.key; lab.key is here: `novamind study key` makes the other",
-        (false, false) => "none: snapshots are sealed by the run alone, archives are not signed",
+        (false, true) => "no seal.key; lab.key is here: create the other with `novamind study key`",
+        (false, false) => "none: snapshots are sealed without a study key, archives are not signed",
     }
 }
 
@@ -97,7 +95,7 @@ fn described(study: &Study) -> String {
         .assignment
         .as_ref()
         .map_or("any label".to_owned(), |own| format!("{} labels", own.places.len()));
-    let consent = if study.consent.is_some() { "asked for" } else { "not asked for: there is no consent.md" };
+    let consent = if study.consent.is_some() { "required" } else { "not required: there is no consent.md" };
     format!(
         "{} · {}\n  digest {}\n  {places} · consent {consent}\n  {questions} questions: {} before, {} after weeks, {} at breaks, {} at \
          the end\n",
@@ -111,7 +109,7 @@ fn described(study: &Study) -> String {
     )
 }
 
-/// The scenarios of session and practice are shipped ones with parameters.
+/// Checks that session and practice use bundled scenarios.
 fn world(study: &Study, context: &Context) -> Result<String, String> {
     let mut names = vec![study.protocol.world.scenario.clone()];
     if study.protocol.practice.offer != PracticeOffer::None {
@@ -120,7 +118,7 @@ fn world(study: &Study, context: &Context) -> Result<String, String> {
     for name in &names {
         let scenario = context.configuration.scenario(name).map_err(|error| error.to_string())?;
         if !scenario.shipped {
-            return Err(format!("{name} is a file of your own: sessions need a shipped scenario"));
+            return Err(format!("{name} is your own file: sessions need a bundled scenario"));
         }
     }
     let [session, practice @ ..] = names.as_slice() else { return Ok(String::new()) };
@@ -128,7 +126,7 @@ fn world(study: &Study, context: &Context) -> Result<String, String> {
     Ok(format!("scenario {session}{practice}"))
 }
 
-/// The wall clock goes as fast as the one that nobody sets, and is not before this program was built.
+/// Checks that the wall clock runs evenly and is not earlier than the build of this program.
 fn clock() -> Result<String, String> {
     let wall = || std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
     const BUILT_AFTER: u64 = 1_760_000_000;
@@ -139,12 +137,12 @@ fn clock() -> Result<String, String> {
     std::thread::sleep(std::time::Duration::from_millis(200));
     let drift = wall().as_secs_f64() - before.as_secs_f64() - steady.elapsed().as_secs_f64();
     if drift.abs() > 0.1 {
-        return Err(format!("the clock jumped by {drift:.1} s while it was looked at: something sets it"));
+        return Err(format!("the clock jumped by {drift:.1} s during the check: another program adjusts it"));
     }
     Ok("runs evenly".to_owned())
 }
 
-/// The folder of runs can be written; it is made if it is missing, as the first session does.
+/// Checks that the folder of runs can be written. Creates it if it does not exist, as the first session does.
 fn writable(folder: &Path) -> Result<(), String> {
     std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let probe = folder.join(format!(".novamind-check-{}", std::process::id()));
@@ -152,13 +150,13 @@ fn writable(folder: &Path) -> Result<(), String> {
     tried.map_err(|error| format!("{}: {error}", folder.display()))
 }
 
-/// Room on the disk, by writing: what a file system promises and what a quota allows are two things.
+/// Checks the free space by writing, because quotas may allow less than the file system reports.
 fn room(folder: &Path) -> Result<String, String> {
     let said = std::process::Command::new("df").args(["-Pk".as_ref(), folder.as_os_str()]).output().ok();
     let text = said.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default();
     let free = text.lines().nth(1).and_then(|line| line.split_whitespace().nth(3)?.parse::<u64>().ok());
     match free.map(|kilobytes| kilobytes * 1024) {
-        None => Ok("this system does not tell how much is free".to_owned()),
+        None => Ok("this system does not report free space".to_owned()),
         Some(free) if free < ROOM => {
             Err(format!("{} MB are free; a long session may need {}", free >> 20, ROOM >> 20))
         }
@@ -169,14 +167,14 @@ fn room(folder: &Path) -> Result<String, String> {
 fn window() -> Result<String, String> {
     match crossterm::terminal::size() {
         Ok((columns, rows)) if columns < WINDOW.0 || rows < WINDOW.1 => {
-            Err(format!("{columns}×{rows}: at least {}×{} characters are needed", WINDOW.0, WINDOW.1))
+            Err(format!("{columns}×{rows}: at least {}×{} characters are required", WINDOW.0, WINDOW.1))
         }
         Ok((columns, rows)) => Ok(format!("{columns}×{rows}")),
-        Err(_) => Ok("no terminal here: check it where people play".to_owned()),
+        Err(_) => Ok("no terminal here: run this check on the machines of participants".to_owned()),
     }
 }
 
-/// Whether the locale speaks UTF-8; the person looks at the signs.
+/// Checks that the locale uses UTF-8, and shows characters for inspection.
 fn characters() -> Result<String, String> {
     let name = ["LC_ALL", "LC_CTYPE", "LANG"]
         .iter()
@@ -185,6 +183,6 @@ fn characters() -> Result<String, String> {
         Some(locale) if !locale.to_lowercase().replace('-', "").contains("utf8") => {
             Err(format!("the locale is {locale}, which is not UTF-8: set LANG, or play with --ascii"))
         }
-        _ => Ok("these should be a box, a bar and a braille pattern: ┼ ▆ ⣿".to_owned()),
+        _ => Ok("you should see a box, a bar and a braille pattern: ┼ ▆ ⣿".to_owned()),
     }
 }

@@ -1,4 +1,4 @@
-//! `novamind study code`: the line that asks for an experimenter's code.
+//! `novamind study code`: prints the line that requires an experimenter's code.
 
 use std::io::{self, BufRead, IsTerminal, Write};
 
@@ -8,10 +8,9 @@ use crossterm::terminal::{disable_raw_mode, enable_raw_mode};
 use crate::cli::{Failure, print};
 use novamind_study::CodeDigest;
 
-/// Fewest characters of a code.
 const FEWEST: usize = 4;
 
-/// Reads a code and prints its digest. On a terminal it is typed twice and not shown.
+/// Reads a code and prints its digest. At a terminal, the code is typed twice and not shown.
 pub fn run() -> Result<(), Failure> {
     let code = if io::stdin().is_terminal() { typed_twice()? } else { first_line()? };
     let moment = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
@@ -22,7 +21,7 @@ pub fn run() -> Result<(), Failure> {
 fn long_enough(code: &str) -> Result<String, Failure> {
     let code = code.trim();
     match code.chars().count() {
-        0..FEWEST => Err(Failure::usage(format!("a code has at least {FEWEST} characters"))),
+        0..FEWEST => Err(Failure::usage(format!("a code needs at least {FEWEST} characters"))),
         _ => Ok(code.to_owned()),
     }
 }
@@ -35,13 +34,13 @@ fn first_line() -> Result<String, Failure> {
 
 fn typed_twice() -> Result<String, Failure> {
     let code = long_enough(&asked("Code (not shown): ")?)?;
-    if asked("Once more: ")?.trim() != code {
+    if asked("Repeat: ")?.trim() != code {
         return Err(Failure::usage("the two codes differ; nothing was printed"));
     }
     Ok(code)
 }
 
-/// What is typed at a prompt of the terminal, without showing it.
+/// Reads a line at the terminal without showing it.
 fn asked(question: &str) -> Result<String, Failure> {
     let failed = |error: io::Error| Failure::failed(error.to_string());
     eprint!("{question}");
@@ -53,7 +52,7 @@ fn asked(question: &str) -> Result<String, Failure> {
     typed.map_err(failed)?.ok_or_else(|| Failure::signal(2))
 }
 
-/// Keys up to Enter; none after ctrl-c, ctrl-d or Escape.
+/// Returns the keys before Enter, or `None` after ctrl-c, ctrl-d or Escape.
 fn hidden_line() -> io::Result<Option<String>> {
     let mut line = String::new();
     loop {

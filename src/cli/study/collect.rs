@@ -1,4 +1,4 @@
-//! `novamind study collect`: the runs of all machines in one folder, with their tables.
+//! `novamind study collect`: collects the runs of all machines in one folder, with their tables.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -15,27 +15,26 @@ use crate::report::collection::{Collected, Collecting, LabKeys, collect};
 use crate::session::LabKey;
 use novamind_study::{CollectNote, lab_key_of, lab_public_key_of, seal_key_of};
 
-/// Options of `study collect`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Folders of runs of the machines, copies of them, and archives; they are searched with all that lies below.
+    /// Folders of runs of the machines, copies of them, and archives; subfolders are searched, too
     #[arg(value_name = "FOLDER", required = true)]
     sources: Vec<PathBuf>,
-    /// Folder for archives, tables and collect.log.
+    /// Folder for archives, tables and collect.log
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Study whose assignment says who should be there.
+    /// Study whose assignment lists the expected participants
     #[arg(long, value_name = "DIR")]
     protocol: Option<PathBuf>,
-    /// CSV with the columns run and participant: labels to put in place of those of the runs.
+    /// CSV with the columns run and participant: labels that replace those of the runs
     #[arg(long, value_name = "FILE")]
     labels: Option<PathBuf>,
-    /// Print one JSON object.
+    /// Print one JSON object
     #[arg(long)]
     json: bool,
 }
 
-/// Runs the command; 1 where somebody has to look into something.
+/// Runs the command. Fails with exit code 1 if notes need attention.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     tidy_up_on_signals();
     let study = options.protocol.as_deref().map(read_study).transpose()?;
@@ -84,20 +83,20 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     }
 }
 
-/// New labels by run.
+/// Reads new labels by run.
 fn read_labels(path: &Path) -> Result<BTreeMap<String, String>, Failure> {
     let wrong = |problem: String| Failure::usage(format!("{}: {problem}", path.display()));
     let mut reader = csv::Reader::from_path(path).map_err(|error| wrong(error.to_string()))?;
     let head = reader.headers().map_err(|error| wrong(error.to_string()))?;
     if head.iter().collect::<Vec<_>>() != ["run", "participant"] {
-        return Err(wrong("the first line has to be: run,participant".to_owned()));
+        return Err(wrong("the first line must be: run,participant".to_owned()));
     }
     let mut labels = BTreeMap::new();
     for row in reader.records() {
         let row = row.map_err(|error| wrong(error.to_string()))?;
         let (run, label) = (row[0].trim().to_owned(), row[1].trim().to_owned());
         if labels.insert(run.clone(), label).is_some() {
-            return Err(wrong(format!("run {run} stands there twice")));
+            return Err(wrong(format!("run {run} is listed twice")));
         }
     }
     Ok(labels)

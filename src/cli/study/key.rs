@@ -1,22 +1,22 @@
-//! `novamind study key`: the keys of a study.
+//! `novamind study key`: creates the keys of a study.
 
 use std::path::Path;
 
 use crate::cli::{Failure, print};
 use novamind_study::{LAB_KEY_FILE, LAB_PUBLIC_KEY_FILE, SEAL_KEY_FILE, Study, make_keys};
 
-/// Makes the keys that lack and says what they are for.
+/// Creates the missing keys and explains them.
 pub fn run(folder: &Path) -> Result<(), Failure> {
     Study::read(folder)?;
     let (public, written) = make_keys(folder)?;
     let mut text: String = written.iter().map(|path| format!("wrote {}\n", path.display())).collect();
     if written.is_empty() {
-        text += "every key is there already; nothing was written\n";
+        text += "all keys exist; nothing was written\n";
     }
     print(&format!(
         "{text}\n{LAB_KEY_FILE} signs archives: keep it secret, keep a copy, and keep it off the machines of participants\n\
          {SEAL_KEY_FILE} seals snapshots: copy it to every machine before its first session\n\
-         {LAB_PUBLIC_KEY_FILE} tells who signed: give it to whoever gets archives\n\nfingerprint {}\n",
+         {LAB_PUBLIC_KEY_FILE} verifies signatures: give it to anyone who receives archives\n\nfingerprint {}\n",
         public.fingerprint()
     ))
 }

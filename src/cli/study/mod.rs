@@ -1,4 +1,4 @@
-//! `novamind study`: what an experimenter does with a study.
+//! `novamind study`: commands of an experimenter.
 
 mod anonymise;
 mod assign;
@@ -18,7 +18,6 @@ use clap::{Args, Subcommand};
 use super::{Context, Failure, play};
 use novamind_study::Study;
 
-/// Options of `study`.
 #[derive(Debug, Args)]
 pub struct Options {
     #[command(subcommand)]
@@ -27,41 +26,42 @@ pub struct Options {
 
 #[derive(Debug, Subcommand)]
 enum StudyCommand {
-    /// Write the folder of a new study, with a protocol to edit.
+    /// Create the folder of a new study, with a protocol to edit
     New(new::Options),
-    /// Check the protocol of a study, and whether this machine is fit for it.
+    /// Check the protocol of a study and whether this machine is ready for it
     Check {
-        /// Folder of the study.
+        /// Folder of the study
         #[arg(value_name = "DIR")]
         folder: PathBuf,
     },
-    /// Assign labels to conditions and seeds, in random order within blocks.
+    /// Assign labels to conditions and seeds, in random order within blocks
     Assign(assign::Options),
-    /// Check the records of a study: damaged or missing runs, other protocols, clocks that were set, looks at hidden state.
+    /// Check the records of a study: damaged or missing runs, other protocols, changed clocks, inspections of hidden state
     Audit(audit::Options),
-    /// Write the tables of a study without what tells who took part.
+    /// Write the tables of a study without data that identifies participants
+    #[command(name = "anonymize", alias = "anonymise")]
     Anonymise(anonymise::Options),
-    /// Collect the runs of all machines, each once and verified, with their tables.
+    /// Collect the runs of all machines, each once and verified, with their tables
     Collect(collect::Options),
-    /// Watch the sessions that are running.
+    /// Watch the sessions in progress
     Watch(watch::Options),
-    /// Print the protocol in words, with every measure and its definition, ready to be preregistered.
+    /// Print the protocol as text, with every measure and its definition, ready for preregistration
     Protocol {
-        /// Folder of the study.
+        /// Folder of the study
         #[arg(value_name = "DIR")]
         folder: PathBuf,
     },
-    /// Make the keys of a study: lab.key signs archives, lab.pub tells who signed, seal.key seals snapshots.
+    /// Create the keys of a study: lab.key signs archives, lab.pub verifies signatures, seal.key seals snapshots
     Key {
-        /// Folder of the study.
+        /// Folder of the study
         #[arg(value_name = "DIR")]
         folder: PathBuf,
     },
-    /// Print the line of study.toml that asks for an experimenter's code.
+    /// Print the line of study.toml that requires an experimenter's code
     Code,
-    /// Lead a participant through the study; as `novamind --study DIR`.
+    /// Guide a participant through the study; the same as `novamind --study DIR`
     Start {
-        /// Folder of the study.
+        /// Folder of the study
         #[arg(value_name = "DIR")]
         folder: PathBuf,
         #[command(flatten)]
@@ -69,14 +69,13 @@ enum StudyCommand {
     },
 }
 
-/// Reads a study, and warns on standard error of settings in it that were removed.
+/// Reads a study, and prints warnings about removed settings to standard error.
 fn read_study(folder: &Path) -> Result<Study, Failure> {
     let study = Study::read(folder)?;
     study.protocol.removed_settings().iter().for_each(|words| eprintln!("novamind: study.toml: {words}"));
     Ok(study)
 }
 
-/// Runs the command.
 pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
     match options.command {
         StudyCommand::New(options) => new::run(&options),

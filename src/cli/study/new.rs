@@ -1,4 +1,4 @@
-//! `novamind study new`: the folder of a study, to be edited.
+//! `novamind study new`: creates the folder of a study.
 
 use std::path::{Path, PathBuf};
 
@@ -9,25 +9,22 @@ use crate::cli::{Failure, print};
 use crate::record::error::RunError;
 use novamind_study::{STUDY_FILE, Study};
 
-/// What a new study looks like.
 static TEMPLATE: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/assets/study");
 
-/// Options of `study new`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Folder to write.
+    /// Folder to write
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// Name of the study: letters, digits and hyphens [default: that of the folder].
+    /// Name of the study: letters, digits and hyphens [default: that of the folder]
     #[arg(long)]
     name: Option<String>,
 }
 
-/// Runs the command.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let folder = &options.folder;
     if folder.join(STUDY_FILE).exists() {
-        return Err(Failure::failed(format!("{} is a study already; nothing was changed", folder.display())));
+        return Err(Failure::failed(format!("{} is already a study; nothing was changed", folder.display())));
     }
     let of_folder = || folder.file_name().map(|name| name.to_string_lossy().into_owned());
     let name = options.name.clone().or_else(of_folder).unwrap_or_else(|| "study".to_owned());
@@ -36,7 +33,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     write(&TEMPLATE, folder, &name)?;
     let study = Study::read(folder)?;
     print(&format!(
-        "{}: edit {STUDY_FILE}, consent.md and questions/, then\n\n    novamind study check {0}\n    novamind study assign {0} \
+        "{}: edit {STUDY_FILE}, consent.md and questions/, then run\n\n    novamind study check {0}\n    novamind study assign {0} \
          --participants N\n    novamind --study {0}\n\nProtocol {}\n",
         folder.display(),
         study.digest

@@ -1,4 +1,4 @@
-//! `novamind study protocol`: the study in words.
+//! `novamind study protocol`: prints the protocol as text.
 
 use std::path::Path;
 

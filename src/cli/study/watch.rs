@@ -1,4 +1,4 @@
-//! `novamind study watch`: all running sessions of a machine, or of folders of runs that are shared.
+//! `novamind study watch`: shows all sessions in progress on a machine, or in shared folders of runs.
 
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -19,30 +19,28 @@ use novamind_study::{
     write_remark,
 };
 
-/// Options of `study watch`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Folder of the study.
+    /// Folder of the study
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// Folders of runs [default: that of this machine].
+    /// Folders of runs [default: that of this machine]
     #[arg(value_name = "RUNS")]
     machines: Vec<PathBuf>,
-    /// Print once, and do not wait for changes.
+    /// Print once and exit
     #[arg(long)]
     once: bool,
-    /// Print one JSON object per session, once.
+    /// Print one JSON object per session and exit
     #[arg(long)]
     json: bool,
-    /// Note something about a participant instead: a label and a text.
+    /// Record a note about a participant instead: a label and a text
     #[arg(long, num_args = 2, value_names = ["LABEL", "TEXT"])]
     note: Option<Vec<String>>,
 }
 
-/// Seconds between two looks.
+/// Time between two refreshes.
 const BETWEEN_LOOKS: Duration = Duration::from_secs(2);
 
-/// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let study = read_study(&options.folder)?;
     let machines = context.machines(&options.machines)?;
@@ -59,7 +57,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         return print(&printable(&shown(&study, &look(), &machines)));
     }
     loop {
-        // Only the text changes: the terminal keeps its own scrolling and its own way to stop.
+        // Only the text is replaced, so that scrolling and ctrl-c work as usual.
         print(&format!(
             "\x1b[H\x1b[2J{}\nctrl-c stops watching\n",
             printable(&shown(&study, &look(), &machines))
@@ -68,7 +66,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     }
 }
 
-/// Writes a remark beside the runs of the label.
+/// Records a note next to the runs of the label.
 fn note(study: &Study, machines: &[PathBuf], label: &str, text: &str) -> Result<(), Failure> {
     participant_folder(Path::new(""), label).map_err(Failure::usage)?;
     let last_played = machines.iter().filter_map(|runs| {
@@ -81,12 +79,12 @@ fn note(study: &Study, machines: &[PathBuf], label: &str, text: &str) -> Result<
     let place = with_runs.or_else(|| machines.iter().find(visited));
     let place = place.or_else(|| machines.first().filter(|_| is_assigned)).ok_or_else(|| {
         Failure::usage(format!(
-            "{label} is no label of this study: it is not in the assignment, and these folders have no run or visit of it. \
-             Nothing was noted"
+            "{label} is not a label of this study: it is not in the assignment, and these folders have no run or visit of it. \
+             Nothing was recorded"
         ))
     })?;
     write_remark(place, label, text)?;
-    print(&format!("noted for {label} in {}\n", place.join(REMARKS).display()))
+    print(&format!("recorded a note for {label} in {}\n", place.join(REMARKS).display()))
 }
 
 fn shown(study: &Study, all: &[Sitting], machines: &[PathBuf]) -> String {
@@ -108,7 +106,7 @@ fn shown(study: &Study, all: &[Sitting], machines: &[PathBuf]) -> String {
     text
 }
 
-/// Who came, also where no run began.
+/// Returns the visits, including those in which no run started.
 fn visitors(study: &Study, all: &[Sitting], machines: &[PathBuf]) -> VisitSummary {
     let with_runs = all.iter().map(|own| own.participant.as_str()).collect();
     VisitSummary::of(&visits_of(study, machines), &with_runs)
@@ -147,7 +145,7 @@ fn in_words(state: SittingState) -> &'static str {
     }
 }
 
-/// Time without a line.
+/// Formats the time since the last line.
 fn quiet(seconds: f64) -> String {
     match seconds as u64 {
         0..=59 => format!("{seconds:.0} s"),

@@ -1,4 +1,4 @@
-//! `find`, `who`, `diff` and `set`: words that the console asks as well (docs/debugging.md).
+//! `find`, `who`, `diff` and `set`: commands that the console offers, too (docs/debugging.md).
 
 use serde_json::{Value, json};
 
@@ -9,7 +9,7 @@ use super::breakpoints::{judged_as_data, writes_as_data};
 use novamind_report::xray::{AskedWords, WordsFound, difference_as_data};
 
 impl Interpreter {
-    /// Answers what is asked. Nothing is read of it before it is clear that it may be asked.
+    /// Answers a command. The permission is checked before anything is parsed.
     pub(super) fn ask_words(
         &mut self,
         word: &str,

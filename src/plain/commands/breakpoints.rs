@@ -1,4 +1,4 @@
-//! `break`, `run`, `back`, `find` and `who`: where a run stops, since when, and who wrote a figure (docs/debugging.md).
+//! `break`, `run`, `since`, `find` and `who`: breakpoints, conditions over time, and what changed a figure (docs/debugging.md).
 
 use serde_json::{Value, json};
 
@@ -15,7 +15,7 @@ use novamind_report::xray::{
 use novamind_session::ReputationCause;
 
 impl Interpreter {
-    /// `break`, `break CONDITION`, `break clear N|all`; `column` is where the rest begins.
+    /// `break`, `break CONDITION`, `break clear N|all`. `column` is where the rest begins.
     pub(super) fn breakpoint(&mut self, rest: &str, column: usize) -> Result<Answer, Problem> {
         if let Err(refusal) = self.session.refuse_to_look_inside() {
             return Ok(Answer::refused("break", refusal));
@@ -44,7 +44,7 @@ impl Interpreter {
                 set.map(|own| {
                     let next = match self.session.ended() {
                         None => "run DAYS stops there".to_owned(),
-                        Some(_) => format!("back {} says since when it is true or false", own.number),
+                        Some(_) => format!("since {} shows since when it is true or false", own.number),
                     };
                     let text = format!("breakpoint {}: {}; {next}", own.number, own.condition);
                     Answer::done("break", text, as_data(&own))
@@ -62,7 +62,7 @@ impl Interpreter {
         let (number, until) =
             without_comment(rest).split_once("until").unwrap_or((without_comment(rest), ""));
         let days = number.trim().parse().ok().filter(|days| *days > 0).ok_or_else(|| Problem {
-            text: "run needs a number of days, for instance run 28".to_owned(),
+            text: "run needs a number of days, for example run 28".to_owned(),
             column,
         })?;
         if number.len() < without_comment(rest).len() {
@@ -98,10 +98,10 @@ impl Interpreter {
         })
     }
 
-    /// `back`, `back N`, `back CONDITION`
-    pub(super) fn back(&mut self, rest: &str, column: usize) -> Result<Answer, Problem> {
+    /// `since`, `since N`, `since CONDITION`
+    pub(super) fn back(&mut self, word: &str, rest: &str, column: usize) -> Result<Answer, Problem> {
         if let Err(refusal) = self.session.refuse_to_look_inside() {
-            return Ok(Answer::refused("back", refusal));
+            return Ok(Answer::refused(word, refusal));
         }
         let rest = without_comment(rest);
         let found = match (rest, rest.parse::<u32>()) {
@@ -112,7 +112,7 @@ impl Interpreter {
         Ok(match found {
             Ok(found) if found.is_empty() => {
                 return Err(Problem {
-                    text: "no breakpoint is set; name a condition, for instance back churn(S1) > 0.05 over 7"
+                    text: "no breakpoint is set; give a condition, for example since churn(S1) > 0.05 over 7"
                         .to_owned(),
                     column,
                 });
@@ -120,9 +120,9 @@ impl Interpreter {
             Ok(found) => {
                 let lines: Vec<String> = found.iter().flat_map(look_back_in_words).collect();
                 let data: Vec<Value> = found.iter().map(look_back_as_data).collect();
-                Answer::done("back", lines.join("\n"), json!({ "conditions": data }))
+                Answer::done(word, lines.join("\n"), json!({ "conditions": data }))
             }
-            Err(refusal) => Answer::refused("back", refusal),
+            Err(refusal) => Answer::refused(word, refusal),
         })
     }
 
@@ -145,12 +145,12 @@ fn condition(text: &str, column: usize) -> Result<Condition, Problem> {
     text.parse().map_err(|problem| at(problem, column))
 }
 
-/// A problem of the rest of a line, in the columns of the line.
+/// Shifts a problem in the rest of a line to the columns of the line.
 fn at(problem: ConditionProblem, column: usize) -> Problem {
     Problem { text: problem.message, column: column + problem.column - 1 }
 }
 
-/// The number of a breakpoint; none for all of them.
+/// Parses the number of a breakpoint. Returns `None` for all of them.
 fn number_or_all(word: &str, column: usize) -> Result<Option<u32>, Problem> {
     match (word, word.parse()) {
         ("all", _) => Ok(None),

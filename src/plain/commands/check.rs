@@ -1,4 +1,4 @@
-//! `check CALL`: what a call would do and cost, before it is made.
+//! `check CALL`: previews the effect and cost of a call.
 
 use serde_json::{Value, json};
 
@@ -16,11 +16,11 @@ use novamind_session::identifiers::ByPlan;
 use novamind_tools::ToolId;
 
 impl Interpreter {
-    /// Reads the call in a line that begins with the word `check`, so that columns are those of the line.
+    /// Parses the call in a line that begins with `check`, so that columns are those of the line.
     pub(super) fn check(&self, line: &str) -> Result<Answer, Problem> {
         let call = line.replacen("check", "     ", 1);
         let Line::Call { word, column, arguments } = grammar::parse(&call)? else {
-            let text = "check needs a call, for instance check set_prices B=30".to_owned();
+            let text = "check needs a call, for example check set_prices B=30".to_owned();
             return Err(Problem { text, column: line.chars().count() });
         };
         let tool = tool_called(&word).ok_or_else(|| no_tool(&word, column))?;
@@ -32,7 +32,7 @@ impl Interpreter {
     }
 
     fn told(&self, preview: &Preview, arguments: &Value) -> Answer {
-        let mut lines = vec![format!("{} would be accepted; nothing was done", preview.tool)];
+        let mut lines = vec![format!("{} would be accepted; it was not made", preview.tool)];
         lines.extend(preview.changes.iter().map(|change| format!("  {}", change_line(change))));
         lines.extend(terms_line(preview).map(|line| format!("  {line}")));
         let notes = preview
@@ -46,7 +46,7 @@ impl Interpreter {
         Answer::done("check", lines.join("\n"), json!(preview))
     }
 
-    /// What a capacity tier holds beside the busiest day of the last week.
+    /// Compares a capacity tier with the busiest day of the last week.
     fn capacity(&self, tool: ToolId, arguments: &Value) -> Option<String> {
         let tier = arguments.get("tier").filter(|_| tool == ToolId::SetCapacityTier)?.as_u64()?;
         let terms = self.session.company().tool_limits();
@@ -54,7 +54,7 @@ impl Interpreter {
         Some(peak_beside_tier(self.session.weeks(), u32::from(own.tier), own.units))
     }
 
-    /// The level that a study reaches.
+    /// Describes the level that a study reaches.
     fn study(&self, tool: ToolId, arguments: &Value) -> Option<String> {
         let group = arguments.get("group_id").filter(|_| tool == ToolId::ResearchGroup)?.as_str()?;
         let terms = self.session.company().tool_limits();
@@ -79,7 +79,7 @@ impl Interpreter {
         ))
     }
 
-    /// The margins that a call would leave; none where none follow from its tool.
+    /// Returns the margins after a call. Returns an empty list if its tool does not affect them.
     fn margins(&self, tool: ToolId, arguments: &Value) -> Vec<String> {
         let Some(lever) = Lever::of(tool) else { return Vec::new() };
         let core = self.session.settings().core;
@@ -98,14 +98,14 @@ impl Interpreter {
     }
 }
 
-/// That a word is no tool: commands cannot be checked.
+/// Returns the problem of a word that is not a tool.
 fn no_tool(word: &str, column: usize) -> Problem {
     if !COMMANDS.iter().any(|(name, _)| *name == word) {
         return unknown(word, column);
     }
     let text = format!(
-        "check takes the call of a tool, and {word} is a command; changes shows what is set, and check set_prices B=30 \
-         is a call that can be checked"
+        "check takes the call of a tool, but {word} is a command; changes lists the settings, and check set_prices B=30 \
+         is an example of a call"
     );
     Problem { text, column }
 }

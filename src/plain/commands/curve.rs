@@ -1,4 +1,4 @@
-//! `curve GROUP [PRICE QUALITY]`: how much quality a group requires at a price, and what would come of a price and a quality.
+//! `curve GROUP [PRICE QUALITY]`: the quality that a group requires at a price, and the expected result of a price and a quality.
 
 use serde_json::{Value, json};
 
@@ -14,9 +14,9 @@ use novamind_report::curve::{
 };
 use novamind_session::identifiers::{Group, Plan};
 
-const USAGE: &str = "name a group, and a price with a quality or neither: curve S1, curve S1 30 0.4";
+const USAGE: &str = "give a group, and optionally a price and a quality: curve S1, curve S1 30 0.4";
 
-/// What is asked: a group, and a price and a quality.
+/// A group, and optionally a price and a quality.
 type Asked = (Group, Option<(f64, f64)>);
 
 impl Interpreter {
@@ -43,7 +43,7 @@ fn asked(arguments: &[Argument]) -> Result<Asked, Problem> {
     let number = |own: &Argument| {
         let value = own.value.as_f64().filter(|value| own.key.is_none() && *value >= 0.0);
         value.ok_or_else(|| Problem {
-            text: "price and quality are numbers of at least 0: curve S1 30 0.4".to_owned(),
+            text: "price and quality must be numbers from 0: curve S1 30 0.4".to_owned(),
             column: own.column,
         })
     };

@@ -1,4 +1,4 @@
-//! `diff DAY DAY`: what differs between the ends of two days of the run (docs/debugging.md#two-days-and-two-runs).
+//! `diff DAY DAY`: the differences between the ends of two days of the run (docs/debugging.md#two-days-and-two-runs).
 
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};

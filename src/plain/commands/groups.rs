@@ -1,5 +1,5 @@
-//! `fit [GROUP]` and `leads`: what groups want beside what they are offered, where their leads come from and what those
-//! cost. And the insights of a group, as ranges.
+//! `fit [GROUP]`, which compares plans with the requirements of groups, and `leads`, which shows sources and costs of leads.
+//! Also formats the insights of a group as ranges.
 
 use serde_json::{Value, json};
 
@@ -21,8 +21,7 @@ impl Interpreter {
         let shown = known(&all, name, arguments)?;
         let mut lines: Vec<String> = shown.iter().flat_map(|fit| fit.lines()).collect();
         lines.push(
-            "ranges are those of the group's means; the quality a customer requires rises with the price"
-                .to_owned(),
+            "ranges are for group averages; a customer's required quality rises with the price".to_owned(),
         );
         let data = json!({ "groups": shown.into_iter().map(fit_as_data).collect::<Vec<Value>>() });
         Ok(Answer::done("fit", lines.join("\n"), data))
@@ -63,7 +62,7 @@ impl Interpreter {
     }
 }
 
-/// The group of a name, or every known one.
+/// Returns the group of a name, or every known one.
 fn known<'a>(all: &'a [Fit], name: Option<&str>, arguments: &[Argument]) -> Result<Vec<&'a Fit>, Problem> {
     let Some(id) = name else { return Ok(all.iter().collect()) };
     if let Some(fit) = all.iter().find(|fit| fit.group.id().eq_ignore_ascii_case(id)) {
@@ -74,11 +73,11 @@ fn known<'a>(all: &'a [Fit], name: Option<&str>, arguments: &[Argument]) -> Resu
         true => all.iter().map(|fit| fit.group.id()).collect::<Vec<_>>().join(", "),
         false => near.join(" or "),
     };
-    Err(problem(arguments, &format!("{id} is no known group; known: {known}")))
+    Err(problem(arguments, &format!("{id} is not a known group; known: {known}")))
 }
 
-/// What a tool answered with ranges in place of estimates, the days they are of, and true means of projects; none where it
-/// holds none of them.
+/// Returns the answer of a tool with ranges and dates in place of estimates, and with true means of projects. Returns `None` if it
+/// contains neither.
 pub(super) fn with_ranges(session: &Session, answer: &novamind_tools::Answer) -> Option<Value> {
     match answer {
         novamind_tools::Answer::GetGroupInsights(insights) => {

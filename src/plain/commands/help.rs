@@ -1,4 +1,4 @@
-//! `help`: the list of commands, and each of them with an example.
+//! `help`: the list of commands, and help on each of them.
 
 use serde_json::json;
 
@@ -10,61 +10,61 @@ use novamind_session::Bands;
 use novamind_tools::{Kind, Numbers};
 
 const NEEDS: &str = "\
-needs                     what costs money or is about to: each with the object, the amount and the call that addresses it
-Urgent ones come first and begin with !; within both, more money at risk in the next four weeks comes first.
-The call below a line can be typed as it stands; check before it says what it would do, for instance
+needs                     list problems that cost money or soon will, each with the amount and a call that addresses it
+Urgent ones come first and are marked with !. Within each kind, the order is by money at risk in the next four weeks.
+You can type the call below a problem as it is. Type check before it to preview its effect, for example
                           check set_capacity_tier 2";
 
 const FIT: &str = "\
-fit                       every known group
-fit GROUP                 one group, for instance fit S1
-For each plan: the price, quality and quota that the group is offered beside the budget, floor and use it has. The
-estimates are ranges with the day they are of; research_group narrows them. What is missing for certain is named.";
+fit                       show every known group
+fit GROUP                 show one group, for example fit S1
+For each plan: price, quality and quota next to the budget, required quality and usage of the group. The estimates are
+ranges with their dates; research_group narrows them. Certain mismatches are named.";
 
 const LEADS: &str = "\
-leads                     leads by group in the last week and the last four, paid and by word of mouth, and how many signed
-leads GROUP               one group, for instance leads S1
-Below it, by channel and group, what a lead and a first bill cost in the last four weeks, beside the cheapest four weeks
-before.";
+leads                     show leads by group in the last week and the last four, paid and by word of mouth, and conversions
+leads GROUP               show one group, for example leads S1
+Then, by channel and group, the cost per lead and per first bill in the last four weeks, compared with the cheapest four
+weeks before.";
 
 const CURVE: &str = "\
-curve GROUP               the quality that a tenth, half and nine tenths of the leads of a group require at a price, the
-                          plans beside it, and the conversion and revenue per lead they bring; for instance curve S1
-curve GROUP PRICE QUALITY what one product of a price and a quality would bring, without quota and promotion, for
-                          instance curve S1 30 0.4
-It asks 2,000 sampled leads with the functions that decide for leads who come. In debug runs and runs that are over they
-are drawn from the traits of the group, and the look is recorded; in all others from what studies have told, so that each
-figure has ends within the error of the study.";
+curve GROUP               show the quality that 10, 50 and 90 % of the leads of a group require at a price, the
+                          plans, and their conversion and revenue per lead; for example curve S1
+curve GROUP PRICE QUALITY show the expected result of a single product, without quota and discount, for
+                          example curve S1 30 0.4
+The curve evaluates 2,000 sampled leads with the functions of the simulator. In debug and finished runs they are drawn from
+the true parameters of the group, and the inspection is recorded. In all other runs they are drawn from the results of
+market studies, so that each figure is a range that covers the error of the study.";
 
 const CHECK: &str = "\
-check CALL                what a call would do and cost; nothing is done, drawn or recorded. For instance
+check CALL                preview the effect and cost of a call; nothing is done, drawn or recorded. For example
                           check set_prices B=30
                           check set_capacity_tier 2
                           check research_group S2
-Prices, model tiers and quotas come with the gross margins that would follow, capacity with the busiest day of the last
-week, a study with the level it reaches, an R&D project with its spread.";
+Prices, model tiers and quotas are shown with the resulting gross margins, capacity with the busiest day of the last week, a
+study with the level it reaches, an R&D project with the range of its effect.";
 
 const PAUSE: &str = "\
-pause                     stops the clock for a break; until resume, only resume, help and quit work
-pause REASON              the same with a reason, which is recorded, for instance pause lunch
-Time that the clock stands counts as no playing time.";
+pause                     stop the clock for a break; until resume, only resume, help and quit work
+pause REASON              the same with a reason, which is recorded, for example pause lunch
+Time with the clock stopped does not count as playing time.";
 
 const BREAK: &str = "\
-break                     the breakpoints with their numbers
-break CONDITION           sets one; run DAYS stops on the first day on which it becomes true. For instance
+break                     list the breakpoints with their numbers
+break CONDITION           set one; run DAYS stops on the first day on which it becomes true. For example
                           break churn(S1) > 5% over 7
                           break reputation(S3) falls
                           break leads(S1) rises over 7
                           break event rival
-break clear N             removes one; break clear all removes all of them
+break clear N             remove one; break clear all removes all of them
 A condition is FIGURE > NUMBER, with >, >=, < or <=, FIGURE rises, FIGURE falls, or event rival, drift, surge or outage.
-over DAYS sums what adds up, and takes shares over so many days. Figures of a group, as in subscribers(S1): subscribers,
+over DAYS sums counts over that many days and computes shares of the sums. Figures of a group, as in subscribers(S1): subscribers,
 leads, new_subscribers, conversion, cancellations, churn, usage, open_issues, reputation, satisfaction, relationship.
 Figures of the company: cash, recurring_revenue, payments, running_costs, subscribers, seats, leads, individual_leads,
 new_subscribers, new_seats, conversion, cancellations, churn, upgrades, downgrades, usage, overload, downtime_minutes,
 open_issues.";
 
-/// The explanation of a command that has one of its own.
+/// Returns the full help of a command, if it has one.
 fn in_full(name: &str, led: bool) -> Option<String> {
     let text = match name {
         "inbox" | "thread" => inbox::IN_FULL,
@@ -84,20 +84,20 @@ fn in_full(name: &str, led: bool) -> Option<String> {
     Some(text.to_owned())
 }
 
-/// Only participants of a study have it.
+/// Listed only for participants of a study.
 const WITHDRAW: (&str, &str) =
     ("withdraw", "withdraw                 erase everything you did in this study; asks once more");
-/// Not for participants of a study: refused in their runs.
+/// Commands that are rejected in runs of participants of a study.
 const NOT_LED: [&str; 11] =
-    ["branch", "step", "xray", "lens", "diff", "set", "break", "run", "back", "find", "who"];
+    ["branch", "step", "xray", "lens", "diff", "set", "break", "run", "since", "find", "who"];
 
-/// The commands, for participants of a study or others.
+/// Returns the commands for participants of a study or for others.
 fn commands(led: bool) -> impl Iterator<Item = (&'static str, &'static str)> {
     let all = COMMANDS.iter().copied().filter(|(_, line)| !line.is_empty());
     all.filter(move |(name, _)| !led || !NOT_LED.contains(name)).chain(led.then_some(WITHDRAW))
 }
 
-/// `help [NAME]`, for participants of a study or others.
+/// `help [NAME]`, for participants of a study or for others.
 pub(super) fn help(
     name: Option<&str>,
     arguments: &[Argument],
@@ -108,14 +108,19 @@ pub(super) fn help(
         let lines: Vec<&str> = commands(led).map(|(_, line)| line).collect();
         let tools: Vec<&str> = callable().collect();
         let text = format!(
-            "{}\n\nEvery tool is a command too: {}\nFor instance: set_prices A=16 B=34 C=70\n\
-             A week as agents call it: next_week {{\"rationale\": \"WHY\", \"predictions\": {{\"cash_1wk\": \
-             {{\"point\": 950000, \"lower\": 900000, \"upper\": 990000}}, …}}}} (help next shows all of it)\n\
-             help NAME explains one of them, and explain TERM says what a word means.",
+            "{}\n\nEvery tool is also a command: {}\nFor example: set_prices A=16 B=34 C=70\n\
+             The call of agents for a week: next_week {{\"rationale\": \"WHY\", \"predictions\": {{\"cash_1wk\": \
+             {{\"point\": 950000, \"lower\": 900000, \"upper\": 990000}}, …}}}} (help next shows the full form)\n\
+             Type help NAME for one of them, and explain TERM for the meaning of a word.",
             lines.join("\n"),
             tools.join(", ")
         );
         return Ok(Answer::done("help", text, json!({ "commands": lines, "tools": tools })));
+    };
+    let name = match name {
+        "again" => "retry",
+        "back" => "since",
+        name => name,
     };
     let is_theirs = !led || !NOT_LED.contains(&name);
     if let Some(text) = in_full(name, led).filter(|_| is_theirs) {
@@ -139,17 +144,17 @@ pub(super) fn help(
     Err(problem(arguments, &not_there("nothing", name, nearest(name, names), where_to_look)))
 }
 
-/// The forms of the command that runs a week, and what its naive forecasts are worth; participants of a study are not
-/// told how other companies did.
+/// Returns the forms of `next` and the coverage of naive forecasts. Participants of a study do not get the coverage, because it
+/// comes from other companies.
 fn next_in_full(led: bool) -> String {
     let forms = "\
 next \"WHY\" naive                         naive forecasts
 next \"WHY\" P L U  P L U  P L U  P L U    point, lower, upper of cash in 1, 4, 12 and 26 weeks
 next_week {\"rationale\": \"WHY\", \"predictions\": {\"cash_1wk\": {\"point\": 950000, \"lower\": 900000, \"upper\": 990000}, \
 \"cash_4wk\": …, \"cash_12wk\": …, \"cash_26wk\": …}}
-next                                     asks, at a terminal; in a lesson that asks for neither rationale nor forecasts it runs
-                                         the week
-Naive forecasts: income, compute and lead costs go on as in the last four weeks, at the costs set now.";
+next                                     asks at a terminal; simulates the week in a lesson that needs neither rationale nor
+                                         forecasts
+Naive forecasts: income, compute and lead costs continue as in the last four weeks, at the costs set now.";
     match led {
         true => forms.to_owned(),
         false => format!("{forms} {}.", Bands::shipped().coverage_in_words()),
@@ -164,7 +169,7 @@ fn callable() -> impl Iterator<Item = &'static str> {
         .map(|spec| spec.name())
 }
 
-/// That there is nothing of a name, what is near, and where the list is.
+/// Returns an error message with similar names and the command that lists all names.
 pub(super) fn not_there(what: &str, name: &str, near: Vec<&str>, list: &str) -> String {
     match near.is_empty() {
         true => format!("there is {what} called {name}; {list}"),

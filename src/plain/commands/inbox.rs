@@ -1,4 +1,4 @@
-//! `inbox`: the threads that wait, first by group, then the next to be lost in sentences.
+//! `inbox`: the waiting threads, first by group, then the most urgent ones.
 
 use std::collections::BTreeMap;
 
@@ -14,24 +14,23 @@ use novamind_rules::{AskingThread, Filter};
 use novamind_session::CompanyNames;
 use novamind_session::identifiers::Plan;
 
-/// Threads that are read out unless all of them are asked for; programs get every row.
+/// Maximum number of threads in the text; the data contains all of them.
 const TOLD: usize = 20;
-/// Days that make a thread urgent.
+/// Days left at which a thread is urgent.
 const URGENT: u32 = 2;
 
-/// What `help inbox` says.
 pub(super) const IN_FULL: &str = "\
-inbox                     how many threads wait in each group, and the 20 that are lost first, the larger first
-inbox all                 every thread that waits
-inbox where CONDITION     those that meet a condition in the grammar of rules, for instance
+inbox                     list the number of waiting threads in each group, and the 20 with the earliest deadlines, larger ones first
+inbox all                 list every waiting thread
+inbox where CONDITION     list those that meet a condition in the grammar of rules, for example
                           inbox where group = E2 and seats >= 500
-inbox all where CONDITION every one of them, where there are more than 20
-inbox NUMBER              the newest thread of the company with that number, turn by turn, for instance inbox 5641
-thread NUMBER             the thread with that number, waiting or ended
-Conditions ask: group, type, seats, asked, asked_plan, last_offer, offers_so_far, turn, days_left, needed_quota, customer.
+inbox all where CONDITION the same without the limit of 20
+inbox NUMBER              show the newest thread of a company, turn by turn, for example inbox 5641
+thread NUMBER             show the thread with that number, waiting or ended
+Conditions use: group, type, seats, asked, asked_plan, last_offer, offers_so_far, turn, days_left, needed_quota, customer.
 send_enterprise_deal and reject_enterprise_deal answer a thread; rules answers many.";
 
-/// Which threads are wanted.
+/// The selection of threads.
 #[derive(Default)]
 struct Wanted {
     all: bool,
@@ -51,13 +50,13 @@ impl Interpreter {
             }
             _ => Err(problem(
                 arguments,
-                "inbox takes all, the number of a company, or where and a condition, for instance inbox where seats >= \
+                "inbox takes all, the number of a company, or where and a condition, for example inbox where seats >= \
                  500; help inbox explains more",
             )),
         }
     }
 
-    /// `inbox [all] where CONDITION`: the text after the command, which begins in a column.
+    /// `inbox [all] where CONDITION`. `text` is the text after the command, which begins at a column.
     pub(super) fn inbox_where(&mut self, text: &str, column: usize) -> Answer {
         let before = text.find("where").map_or(0, |at| at + "where".len());
         let (head, condition) = text.split_at(before);
@@ -89,7 +88,7 @@ impl Interpreter {
             (None, 0) => vec!["no threads waiting".to_owned()],
             (None, many) => vec![format!("{} waiting", threads_in_words(many))],
             (Some(_), many) => {
-                vec![format!("{} of {} waiting meet it", grouped(many as f64, 0), threads_in_words(everyone))]
+                vec![format!("{} of {} waiting match", grouped(many as f64, 0), threads_in_words(everyone))]
             }
         };
         lines.extend(group_lines(&waiting));
@@ -115,7 +114,7 @@ fn funnel_row(own: &Funnel) -> Value {
     })
 }
 
-/// A sentence for each group with threads.
+/// Returns a sentence for each group with threads.
 fn group_lines(waiting: &[AskingThread]) -> Vec<String> {
     let mut groups: BTreeMap<&str, Vec<&AskingThread>> = BTreeMap::new();
     for thread in waiting {
@@ -135,40 +134,40 @@ fn group_line(group: &str, threads: &[&AskingThread]) -> String {
     let least = asked.iter().copied().fold(f64::INFINITY, f64::min);
     let most = asked.iter().copied().fold(0.0, f64::max);
     match asked.len() {
-        0 => line + ", none names a price",
-        1 => line + &format!(", 1 names a price, {}", cents(most)),
+        0 => line + ", none asks a price",
+        1 => line + &format!(", 1 asks a price, {}", cents(most)),
         many => {
-            line + &format!(", {} name a price, {} to {}", grouped(many as f64, 0), cents(least), cents(most))
+            line + &format!(", {} ask a price, {} to {}", grouped(many as f64, 0), cents(least), cents(most))
         }
     }
 }
 
-/// The threads in sentences, and how the others are heard.
+/// Returns the threads as sentences, and how to list the others.
 fn told_lines(waiting: &[AskingThread], wanted: &Wanted, names: &CompanyNames) -> Vec<String> {
     let told = if wanted.all { waiting.len() } else { waiting.len().min(TOLD) };
     if told == 0 {
         return Vec::new();
     }
     let mut lines = vec![match told < waiting.len() {
-        true => format!("the {told} that are lost first, the larger first:"),
-        false => "the first to be lost first:".to_owned(),
+        true => format!("the {told} with the earliest deadlines, larger ones first:"),
+        false => "earliest deadline first:".to_owned(),
     }];
     lines.extend(waiting.iter().take(told).map(|thread| sentence(thread, names)));
     if told < waiting.len() {
         let more = grouped((waiting.len() - told) as f64, 0);
         lines.push(match wanted.filter {
-            Some(_) => format!("{more} more: inbox all where … reads all of them"),
+            Some(_) => format!("{more} more: inbox all where … lists all of them"),
             None => format!(
-                "{more} more: inbox all reads all of them, inbox where CONDITION some, for instance inbox where \
+                "{more} more: inbox all lists all of them, inbox where CONDITION some, for example inbox where \
                  seats >= 500"
             ),
         });
     }
-    lines.push("inbox NUMBER reads the thread of one company".to_owned());
+    lines.push("inbox NUMBER shows the thread of one company".to_owned());
     lines
 }
 
-/// A thread in one sentence.
+/// Formats a thread as one sentence.
 fn sentence(thread: &AskingThread, names: &CompanyNames) -> String {
     let own = &thread.waiting;
     let mut parts = vec![
@@ -189,7 +188,7 @@ fn sentence(thread: &AskingThread, names: &CompanyNames) -> String {
     parts.join(", ")
 }
 
-/// What a company asks: a price, a plan, or both.
+/// Describes the demand of a company: a price, a plan, or both.
 pub(super) fn ask_in_words(thread: &AskingThread) -> Option<String> {
     match (thread.waiting.asked, thread.asked_plan) {
         (Some(price), Some(plan)) => Some(format!("asks {} for plan {plan}", cents(price))),
@@ -199,7 +198,7 @@ pub(super) fn ask_in_words(thread: &AskingThread) -> Option<String> {
     }
 }
 
-/// An offer in words: `plan B at $30.00 or plan C at $55.00`.
+/// Describes an offer, as in `plan B at $30.00 or plan C at $55.00`.
 pub(super) fn offer_in_words(offered: &[(Plan, f64)]) -> String {
     let line = |(plan, price): &(Plan, f64)| format!("plan {plan} at {}", cents(*price));
     offered.iter().map(line).collect::<Vec<_>>().join(" or ")
@@ -235,9 +234,7 @@ mod tests {
         waiting[1] = thread(2, None, Some(Plan::A));
         let groups = group_lines(&waiting);
         assert!(groups[0].starts_with("E1: 341 threads, 17,050 seats, "), "{groups:?}");
-        assert!(
-            groups[0].ends_with(", 1 names a price, $20.00") && groups[1].ends_with("none names a price")
-        );
+        assert!(groups[0].ends_with(", 1 asks a price, $20.00") && groups[1].ends_with("none asks a price"));
         let lines = told_lines(&waiting, &Wanted::default(), &names);
         assert_eq!(lines.len(), 1 + TOLD + 2);
         assert!(

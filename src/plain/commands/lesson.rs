@@ -1,4 +1,4 @@
-//! `lesson`, `guess`, `hint`, `again` and `debrief`: a lesson line by line.
+//! `lesson`, `guess`, `hint`, `retry` and `debrief`: a lesson line by line.
 
 use serde_json::{Value, json};
 
@@ -21,11 +21,11 @@ impl Interpreter {
         match arguments {
             [] => Ok(self.lesson_page("lesson")),
             [only] if only.key.is_none() && only.value == "next" => Ok(self.next_part()),
-            _ => Err(problem(arguments, "lesson takes nothing, or next")),
+            _ => Err(problem(arguments, "lesson takes no argument or next")),
         }
     }
 
-    /// What the student sees, or why there is nothing to see.
+    /// Returns the page of the lesson, or the reason why there is none.
     fn lesson_page(&mut self, command: &str) -> Answer {
         match LessonPage::of(&mut self.session) {
             Some(page) => Answer::done(command, page_in_words(&page).join("\n"), as_data(&page)),
@@ -46,13 +46,13 @@ impl Interpreter {
     /// `guess ANSWER`
     pub(super) fn guess(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {
         let [only] = arguments else {
-            return Err(problem(arguments, "guess takes one answer, for instance guess 12000"));
+            return Err(problem(arguments, "guess takes one answer, for example guess 12000"));
         };
         let written = only.value.as_str().map_or_else(|| only.value.to_string(), str::to_owned);
         if self.session.lesson().is_none() {
             return Ok(Answer::refused("guess", no_lesson()));
         }
-        // Where nothing is asked, the session says so whatever is answered.
+        // If the step asks nothing, the session rejects any answer.
         let question = LessonPage::of(&mut self.session).and_then(|page| page.question);
         let value = question.map_or(Ok(f64::NAN), |question| typed_guess(&question, &written));
         let value = value.map_err(|text| problem(arguments, &text))?;
@@ -70,19 +70,19 @@ impl Interpreter {
         }
     }
 
-    /// `again [STEP]`
-    pub(super) fn again(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {
+    /// `retry [STEP]`
+    pub(super) fn again(&mut self, word: &str, arguments: &[Argument]) -> Result<Answer, Problem> {
         let step = match arguments {
             [] => self.session.lesson().map_or(0, |standing| standing.last_begun()),
             [only] if only.key.is_none() => {
                 only.value.as_u64().and_then(|number| (number as usize).checked_sub(1)).ok_or_else(|| {
-                    problem(arguments, "again takes the number of a step, for instance again 2")
+                    problem(arguments, "retry takes the number of a step, for example retry 2")
                 })?
             }
-            _ => return Err(problem(arguments, "again takes the number of a step, or nothing")),
+            _ => return Err(problem(arguments, "retry takes the number of a step or no argument")),
         };
         let again = try_step_again(&self.session, step);
-        Ok(self.go_to_lesson("again", again))
+        Ok(self.go_to_lesson(word, again))
     }
 
     /// `debrief`
@@ -108,7 +108,10 @@ impl Interpreter {
 }
 
 fn no_lesson() -> Refusal {
-    Refusal::new("not_in_a_lesson", "this run belongs to no lesson; novamind lesson list names them")
+    Refusal::new(
+        "not_in_a_lesson",
+        "this run is not part of a lesson; novamind lesson list shows the lessons",
+    )
 }
 
 fn as_data(page: &LessonPage) -> Value {

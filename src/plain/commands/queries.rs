@@ -1,4 +1,4 @@
-//! `queries`: the library of queries, and what one of them answers.
+//! `queries`: lists the library of queries, or runs one of them.
 
 use serde_json::{Value, json};
 
@@ -40,17 +40,17 @@ impl Interpreter {
         Ok(self.query(&sql, QuerySource::Library))
     }
 
-    /// Records a call of a tool that does not exist: a word that is followed by the arguments of a call.
+    /// Records the call of a tool that does not exist: an unknown word that is followed by arguments.
     pub(super) fn unknown_tool(&mut self, word: &str, column: usize, arguments: &[Argument]) -> Problem {
         let args = as_object(arguments, None).ok().filter(|_| !arguments.is_empty());
         if let Some(args) = args.filter(|_| novamind_tools::find(word).is_none()) {
-            // What is shown names the commands of plain mode too.
+            // The message also names commands of plain mode.
             let _ = self.session.call(word, &args, Via::Plain);
         }
         unknown(word, column)
     }
 
-    /// Calls a tool; a script that runs long is stopped as a query is.
+    /// Calls a tool. A signal stops a long script, as it stops a query.
     pub(super) fn call_stoppable(
         &mut self,
         tool: ToolId,
@@ -67,7 +67,7 @@ impl Interpreter {
     }
 }
 
-/// What a script says, as it is, line by line.
+/// Returns the output of a script, line by line.
 pub(super) fn of_script(tool: ToolId, answer: &novamind_tools::Answer) -> Answer {
     let data = answer.to_json();
     let part = |name: &str| data[name].as_str().unwrap_or_default().trim_end().to_owned();

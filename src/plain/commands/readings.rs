@@ -1,4 +1,4 @@
-//! Readings: what the company looks like, and what there is to know about commands, tools and tables.
+//! Commands that show the state of the company, and help on tools and tables.
 
 use std::collections::BTreeSet;
 
@@ -107,7 +107,7 @@ impl Interpreter {
         let data = json!({ "needs": needs.iter().map(row).collect::<Vec<Value>>() });
         let mut lines: Vec<String> = needs.iter().flat_map(need_lines).collect();
         if lines.is_empty() {
-            lines.push("nothing needs you".to_owned());
+            lines.push("no action needed".to_owned());
         }
         Answer::done("needs", lines.join("\n"), data)
     }
@@ -117,7 +117,7 @@ impl Interpreter {
         let mut lines: Vec<String> = seen.changes.iter().map(change).collect();
         lines.extend(seen.purchases.iter().cloned());
         if lines.is_empty() {
-            lines.push("nothing has changed since the last week".to_owned());
+            lines.push("no changes since the last week".to_owned());
         }
         lines.extend(alike_lines(&seen));
         lines.extend(late_lines(&seen));
@@ -143,13 +143,13 @@ impl Interpreter {
             .map(|entry| entry_line(entry, &undone, self.session.company().company_names()) + "\n")
             .collect();
         if text.is_empty() {
-            text = "nothing has been done yet".to_owned();
+            text = "no actions yet".to_owned();
         }
         Answer::done("history", text, json!({ "entries": last }))
     }
 }
 
-/// A need in one line, and the call that would mend it in another.
+/// Formats a need as one line, and the call that addresses it as another.
 fn need_lines(need: &Need) -> Vec<String> {
     let mark = if need.urgent { '!' } else { '-' };
     let risk = grouped(need.at_risk, 0);
@@ -162,7 +162,7 @@ fn need_lines(need: &Need) -> Vec<String> {
     lines
 }
 
-/// A change as one line.
+/// Formats a change as one line.
 pub fn change(change: &Change) -> String {
     change_in_words(change)
 }

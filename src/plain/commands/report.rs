@@ -1,4 +1,4 @@
-//! `report [week|run]`: a week or the whole run told.
+//! `report [week|run]`: a report on a week or the whole run.
 
 use serde_json::{Value, json};
 
@@ -10,7 +10,7 @@ use novamind_report::{Story, WeekReport, as_markdown};
 use novamind_session::Verdict;
 use novamind_tools::Refusal;
 
-/// Moves that are told.
+/// Maximum number of changed figures in the text.
 const TOLD: usize = 6;
 
 impl Interpreter {
@@ -51,7 +51,7 @@ impl Interpreter {
     }
 }
 
-/// The week in sentences, one a line.
+/// Formats the report on a week, one sentence per line.
 fn in_words(report: &WeekReport) -> String {
     let week = &report.week;
     let parts: Vec<String> =
@@ -59,12 +59,14 @@ fn in_words(report: &WeekReport) -> String {
     let change = signed_dollars(week.cash_change);
     let mut lines =
         vec![format!("week to day {}: cash change {change}, of which {}", week.day, parts.join(", "))];
-    lines.extend(report.short.iter().map(|short| format!("it is a week {short}")));
+    lines.extend(report.short.iter().map(|short| format!("this is a week {short}")));
     if report.was_filed_at_limit() {
-        lines.push("the time for this week was over: it was filed with the naive projection".to_owned());
+        lines.push(
+            "the time limit for this week was reached: it was submitted with the naive projection".to_owned(),
+        );
     }
     if !report.decided.is_empty() {
-        lines.push(format!("decided before it: {}", report.decided.join("; ")));
+        lines.push(format!("decisions before it: {}", report.decided.join("; ")));
     }
     for moved in report.moves.iter().take(TOLD) {
         let mut line = format!("{} {} → {}", moved.name, moved.old, moved.new);
@@ -83,7 +85,7 @@ fn in_words(report: &WeekReport) -> String {
         let ago = counted(due.forecast.horizon_days / 7, "week", "weeks");
         let miss = due.miss_in_words().map_or(String::new(), |miss| format!(", point {miss}"));
         let verdict = due.verdict().map_or("open", Verdict::word);
-        let filed = if report.is_of_limit(due) { ", which the program filed at the time limit" } else { "" };
+        let filed = if report.is_of_limit(due) { ", submitted by the program at the time limit" } else { "" };
         lines.push(format!("forecast from {ago} ago{filed}: {verdict} the interval{miss}"));
     }
     lines.push(format!(
@@ -91,7 +93,7 @@ fn in_words(report: &WeekReport) -> String {
         counted(week.threads_opened, "thread", "threads"),
         counted(week.replies, "reply", "replies"),
         counted(report.customer_posts, "post", "posts"),
-        counted(report.comments, "comment on ours", "comments on ours"),
+        counted(report.comments, "comment on your posts", "comments on your posts"),
         counted(report.news_items, "news item", "news items"),
         counted(week.research_finished, "finished R&D project or study", "finished R&D projects and studies")
     ));

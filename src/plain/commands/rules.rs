@@ -1,4 +1,4 @@
-//! `rules`: what rules would send to the threads that wait, and sending it.
+//! `rules`: previews and sends the answers of rules to waiting threads.
 
 use serde_json::{Value, json};
 
@@ -11,21 +11,20 @@ use novamind_rules::{AskingThread, Batch, RuledThread};
 use novamind_session::CompanyNames;
 use novamind_tools::{Refusal, ToolId};
 
-/// Threads that a preview lists; programs get all.
+/// Maximum number of threads in a preview; the data contains all of them.
 const LISTED: usize = 20;
 
-/// What `help rules` says.
 pub const IN_FULL: &str = "\
-rules RULES         what each waiting thread would be sent; nothing is sent
-rules send RULES    the same, and sends it: one call of send_enterprise_deal, one of reject_enterprise_deal
-A rule is an action with conditions; a semicolon separates rules, and the first that means a thread answers it.
+rules RULES         preview the answer to each waiting thread; nothing is sent
+rules send RULES    the same, and send them with one call of send_enterprise_deal and one of reject_enterprise_deal
+A rule is an action with conditions. Semicolons separate rules; the first rule that matches a thread answers it.
   offer where group = E2 and asked is null: B 85
   offer where asked_plan = B and seats >= 500: B asked*1.05, C list*0.9
   accept asked >= 18
   reject rest
-accept offers what the company asked. A price is dollars, or asked, list or last_offer, with a factor.
-Conditions ask: group, type, seats, asked, asked_plan, last_offer, offers_so_far, turn, days_left, needed_quota, customer.
-They are compared with = != < <= > >=, in (…), is null, is not null, and joined with and. rest means all others.";
+accept offers what the company asked. A price is in dollars, or asked, list or last_offer, optionally with a factor.
+Conditions use: group, type, seats, asked, asked_plan, last_offer, offers_so_far, turn, days_left, needed_quota, customer.
+Operators: = != < <= > >=, in (…), is null, is not null; and joins conditions. rest matches all other threads.";
 
 impl Interpreter {
     pub(super) fn rules(&mut self, text: &str, column: usize) -> Answer {
@@ -48,8 +47,10 @@ impl Interpreter {
     fn send(&mut self, batch: &Batch) -> Answer {
         let calls = batch.calls();
         if calls.is_empty() {
-            let text =
-                format!("no waiting thread would get an offer or an end\n{}", batch.summary().join("\n"));
+            let text = format!(
+                "no waiting thread would get an offer or a rejection\n{}",
+                batch.summary().join("\n")
+            );
             return Answer::refused("rules", Refusal::new("nothing_to_send", text));
         }
         let (mut lines, mut data) = (batch.summary(), Vec::new());
@@ -67,9 +68,9 @@ impl Interpreter {
                     data.push(json!({ "tool": tool, "answer": answer }));
                 }
                 Err(refusal) if data.is_empty() => return Answer::refused("rules", refusal),
-                // What was sent before it stays sent.
+                // Earlier calls stay sent.
                 Err(refusal) => {
-                    lines.push(format!("{tool} refused {}: {}", refusal.code, refusal.message));
+                    lines.push(format!("{tool} rejected {}: {}", refusal.code, refusal.message));
                     data.push(json!({ "tool": tool, "code": refusal.code, "error": refusal.message }));
                 }
             }
@@ -89,7 +90,7 @@ fn preview(batch: &Batch, names: &CompanyNames) -> Answer {
     if meant.len() > LISTED {
         lines.push(format!("and {} more", grouped((meant.len() - LISTED) as f64, 0)));
     }
-    lines.push("nothing is sent; rules send … sends it".to_owned());
+    lines.push("nothing was sent; to send, type rules send …".to_owned());
     let threads: Vec<Value> = batch.threads.iter().map(|ruled| ruled.row(names)).collect();
     let data = json!({ "rules": batch.sums_as_json(), "threads": threads });
     Answer::done("rules", lines.join("\n"), data)

@@ -1,4 +1,4 @@
-//! One thread of a negotiation: who, what was written and offered turn by turn, and the days left.
+//! One negotiation thread: the company, its messages and offers turn by turn, and the deadline.
 
 use serde_json::{Value, json};
 
@@ -24,7 +24,7 @@ impl Interpreter {
     /// `thread NUMBER`.
     pub(super) fn thread(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {
         let Some(thread) = number(arguments)? else {
-            return Err(problem(arguments, "thread needs the number of a thread, for instance thread 12"));
+            return Err(problem(arguments, "thread needs the number of a thread, for example thread 12"));
         };
         let told = self.conversation(&format!("{TURNS} WHERE thread_id = {thread} ORDER BY message_id"));
         Ok(told.unwrap_or_else(|| {
@@ -33,7 +33,7 @@ impl Interpreter {
         }))
     }
 
-    /// The newest thread of a company.
+    /// Answers with the newest thread of a company.
     pub(super) fn thread_of_company(&mut self, customer: u64) -> Answer {
         let newest = format!(
             "{TURNS} WHERE thread_id = (SELECT max(thread_id) FROM enterprise_turns WHERE customer_id = {customer}) \
@@ -45,7 +45,7 @@ impl Interpreter {
         })
     }
 
-    /// The thread that a statement reads; none where it finds no turn.
+    /// Returns the thread that a statement selects. Returns `None` if it selects no turn.
     fn conversation(&mut self, statement: &str) -> Option<Answer> {
         let turns = match self.session.look_into_database(statement) {
             Ok(turns) => turns,
@@ -60,7 +60,7 @@ impl Interpreter {
             .and_then(|(waiting, _)| waiting.into_iter().find(|own| own.waiting.thread == thread));
         let names = self.session.company().company_names();
         let kind = text_at(first, 2).replace('_', " ");
-        // Rows of the player count one seat, whatever the company has.
+        // The rows of the player count one seat each, whatever the size of the company.
         let theirs = turns.rows.iter().filter(|row| text_at(row, 4) != "agent");
         let seats = waiting.as_ref().map_or_else(
             || theirs.map(|row| number_at(row, 8) as u32).max().unwrap_or(1),
@@ -85,7 +85,7 @@ impl Interpreter {
     }
 }
 
-/// Group, profile and subscription of a company.
+/// Describes group, profile and subscription of a company.
 fn company_in_words(rows: &Rows) -> Option<String> {
     let row = rows.rows.first()?;
     let mut parts = vec![format!("group {}", text_at(row, 0))];
@@ -104,13 +104,13 @@ fn company_in_words(rows: &Rows) -> Option<String> {
         "subscribed" => {
             format!("subscribes to plan {} at {} a seat", text_at(row, 7), cents(number_at(row, 8)))
         }
-        "lead" => "no subscriber yet".to_owned(),
+        "lead" => "not subscribed yet".to_owned(),
         other => format!("subscription {other}"),
     });
     Some(parts.join("; "))
 }
 
-/// A turn as one line; none for what opens a thread without a word.
+/// Formats a turn as one line. Returns `None` for an opening without a message.
 fn turn_in_words(row: &[Cell]) -> Option<String> {
     let (day, words) = (number_at(row, 7), text_at(row, 5));
     let (offers, price) = offer_of(text_at(row, 6));
@@ -125,21 +125,22 @@ fn turn_in_words(row: &[Cell]) -> Option<String> {
     Some(format!("day {day}: {said}"))
 }
 
-/// What is left to do, and how.
+/// Returns the state of the thread and the possible next step.
 fn state_in_words(waiting: Option<&AskingThread>, last: &[Cell], customer: u32) -> Vec<String> {
     let Some(thread) = waiting else {
         return vec![match text_at(last, 9) {
-            "accepted" => "it ended with a deal".to_owned(),
-            "agent_rejected" => "it was ended by you".to_owned(),
-            _ => "it does not wait for you".to_owned(),
+            "accepted" => "the thread ended with a deal".to_owned(),
+            "agent_rejected" => "you ended the thread".to_owned(),
+            _ => "the thread does not wait for you".to_owned(),
         }];
     };
-    let mut parts = vec![format!("it waits for you: {} left", count(thread.waiting.days_left, "day"))];
-    parts.extend(ask_in_words(thread).map(|ask| format!("it {ask}")));
+    let mut parts =
+        vec![format!("the thread waits for you: {} left", count(thread.waiting.days_left, "day"))];
+    parts.extend(ask_in_words(thread).map(|ask| format!("the company {ask}")));
     parts.extend(
         thread
             .needed_quota
-            .map(|units| format!("it needs a quota of {} units a day", grouped(units.round(), 0))),
+            .map(|units| format!("the company needs a quota of {} units a day", grouped(units.round(), 0))),
     );
     let plan = thread.asked_plan.map_or("B", |plan| plan.id());
     vec![

@@ -1,4 +1,4 @@
-//! `whatif …`: what would have been under other decisions (docs/interfaces/plain-mode.md#what-if).
+//! `whatif …`: re-simulates with other decisions (docs/interfaces/plain-mode.md#what-if).
 
 use std::path::Path;
 
@@ -21,16 +21,16 @@ use novamind_rules::answers_to_companies;
 use novamind_session::{Interface, Session};
 use novamind_tools::Refusal;
 
-/// Futures that are drawn where no number is named.
+/// Default number of futures.
 const FUTURES: u32 = 20;
-/// Most of them.
+/// Maximum number of futures.
 const MOST_FUTURES: u32 = 200;
-/// Largest file that holds a question, in bytes.
+/// Maximum size of a file with a question, in bytes.
 const LARGEST_FILE: u64 = 64 << 10;
-/// How a question reads.
-const USAGE: &str = "for instance: whatif from 2: set_prices * 0.9";
+/// Example in error messages.
+const USAGE: &str = "for example: whatif from 2: set_prices * 0.9";
 
-/// A question, as it is written.
+/// A parsed question.
 #[derive(Debug, Clone, PartialEq)]
 struct Question {
     from: u32,
@@ -42,7 +42,7 @@ struct Question {
 impl Interpreter {
     /// `whatif WEEK`, `whatif [adopt] from WEEK [until WEEK] [futures [N]]: EDIT; EDIT | EDIT`, `whatif file PATH`.
     pub(super) fn what_if(&mut self, words: &str, column: usize) -> Result<Answer, Problem> {
-        // Nothing is read of what is asked for before it is clear that it may be answered.
+        // Check the permission before parsing anything.
         if let Err(refusal) = folder_of_causes(&self.session) {
             return Ok(Answer::refused("whatif", refusal));
         }
@@ -65,14 +65,14 @@ impl Interpreter {
         }
     }
 
-    /// The text of a file that holds a question: a participant of a study has none, and a file is a regular and small one.
+    /// Reads a file with a question. Participants of a study may not use files; others need a small regular file.
     fn question_in(&self, path: &Path) -> Result<String, String> {
         if self.leads_participant {
-            return Err("questions are typed in a session of a study".to_owned());
+            return Err("in a session of a study, type the question instead".to_owned());
         }
         let found = std::fs::metadata(path).map_err(|error| error.to_string())?;
         if !found.is_file() || found.len() > LARGEST_FILE {
-            return Err(format!("it is no file of text of at most {} KiB", LARGEST_FILE >> 10));
+            return Err(format!("it is not a text file of at most {} KiB", LARGEST_FILE >> 10));
         }
         std::fs::read_to_string(path).map_err(|error| error.to_string())
     }
@@ -82,7 +82,7 @@ impl Interpreter {
         self.branches_kept.of(folder)
     }
 
-    /// The calls from a week on, with their lines.
+    /// Lists the calls from a week on, with their line numbers.
     fn decisions_from(&mut self, week: u32) -> Answer {
         let calls = self.what_if_of_run().and_then(|own| Ok((own.decisions(week)?, own.days_per_week())));
         let (calls, days) = match calls {
@@ -93,7 +93,7 @@ impl Interpreter {
         let rows = decision_rows(&calls, days);
         let headers = ["line", "week", "decision", "arguments", ""].map(str::to_owned);
         let text = match rows.is_empty() {
-            true => format!("nothing was decided from week {week} on; {USAGE}"),
+            true => format!("no decisions from week {week} on; {USAGE}"),
             false => format!("{}{USAGE}", aligned(&headers, &rows)),
         };
         let (mut made, mut set) = (Vec::new(), Vec::new());
@@ -136,17 +136,19 @@ impl Interpreter {
         }
     }
 
-    /// Makes the only alternative of a question a run of its own, and goes on in it.
+    /// Plays the only alternative of a question in a new branch and continues in it.
     fn adopt(&mut self, question: &Question, column: usize) -> Result<Answer, Problem> {
         if question.futures.is_some() || question.until.is_some() {
-            let text = "adopt takes from alone: a branch is played to the day of this run".to_owned();
+            let text =
+                "adopt cannot be combined with until or futures: the branch is played to the day of this run"
+                    .to_owned();
             return Err(Problem { text, column });
         }
         let decided = match &question.alternatives[..] {
             [] => Vec::new(),
             [only] => only.clone(),
             _ => {
-                let text = "one alternative can be adopted; name its edits alone".to_owned();
+                let text = "adopt takes one alternative; give only its edits".to_owned();
                 return Err(Problem { text, column });
             }
         };
@@ -159,7 +161,7 @@ impl Interpreter {
             arguments.split_last().map_or((None, arguments), |(last, first)| (Some(last), first));
         let keeps = last.is_some_and(|last| last.key.is_none() && last.value == "keep");
         let week = count(if keeps { first } else { arguments })?
-            .ok_or_else(|| problem(arguments, "branch needs the number of a week, for instance branch 4"))?;
+            .ok_or_else(|| problem(arguments, "branch needs the number of a week, for example branch 4"))?;
         if keeps {
             return Ok(self.branch_keeping(week, &[]));
         }
@@ -174,7 +176,7 @@ impl Interpreter {
         })
     }
 
-    /// Goes on in a branch that keeps the decisions of this run, some of them edited.
+    /// Continues in a branch with the decisions of this run and some edits.
     fn branch_keeping(&mut self, week: u32, decided: &[DecisionEdit]) -> Answer {
         let mode = self.session.manifest().mode.of_branch();
         let stop = self.watch.enter_stoppable();
@@ -194,10 +196,10 @@ impl Interpreter {
         let told = adopted
             .refused
             .iter()
-            .map(|(day, what, refusal)| format!("\nday {day}: {what} was refused: {}", refusal.message));
+            .map(|(day, what, refusal)| format!("\nday {day}: {what} was rejected: {}", refusal.message));
         let stands = match self.session.ended() {
             Some(ended) => format!("run {run} ended on day {day}: {}, ", ended.id()),
-            None => format!("run {run} stands on day {day} "),
+            None => format!("run {run} is on day {day} "),
         };
         let text = format!(
             "{stands}with the decisions of its parent · {mode} · {}{}",
@@ -207,7 +209,7 @@ impl Interpreter {
         Answer::done("branch", text, json!({ "run": run, "day": day, "mode": mode, "refused": refused }))
     }
 
-    /// Leaves this run for another one; its name and day.
+    /// Leaves this run for another one. Returns the id and the day of that run.
     pub(super) fn go_on_in(&mut self, other: Session) -> (String, u32) {
         self.session.activity().leave(LeavingCause::Quit);
         let _ = self.session.save();
@@ -217,7 +219,7 @@ impl Interpreter {
         (self.session.manifest().id.clone(), self.session.day())
     }
 
-    /// `branches`: the tree in which the run stands.
+    /// `branches`: the tree of branches that contains the run.
     pub(super) fn branches(&self) -> Answer {
         let id = &self.session.manifest().id;
         let Some(runs) = self.session.folder().and_then(Path::parent) else {
@@ -240,7 +242,7 @@ impl Interpreter {
     }
 }
 
-/// A row for each decision: its line, week, what it is, arguments or value, and whether it was refused.
+/// Returns a row for each decision: line, week, tool or key, arguments or value, and whether it was rejected.
 fn decision_rows(decisions: &[PastDecision], days: u32) -> Vec<Vec<String>> {
     let row = |own: &PastDecision| {
         let (what, arguments) = match own {
@@ -252,14 +254,14 @@ fn decision_rows(decisions: &[PastDecision], days: u32) -> Vec<Vec<String>> {
     decisions.iter().map(row).collect()
 }
 
-/// A file holds the words before the colon in its first line, and an alternative in each of the others.
+/// Converts a file, which holds the words before the colon in its first line and an alternative in each of the others.
 fn as_question(text: &str) -> String {
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
     let first = lines.next().unwrap_or_default().trim_end_matches(':');
     format!("{first}: {}", lines.collect::<Vec<_>>().join(" | "))
 }
 
-/// Reads a question that begins in a column.
+/// Parses a question that begins at a column.
 fn read(words: &str, column: usize) -> Result<Question, Problem> {
     let problem = |text: String, at: usize| Problem { text, column: column + words[..at].chars().count() };
     let (head, rest) = words.split_once(':').unwrap_or((words, ""));
@@ -276,17 +278,17 @@ fn read(words: &str, column: usize) -> Result<Question, Problem> {
             ("until", Some(week)) => question.until = Some(week),
             ("futures", Some(count)) if (2..=MOST_FUTURES).contains(&count) => question.futures = Some(count),
             ("futures", Some(_)) => {
-                return Err(problem(format!("futures are drawn in numbers from 2 to {MOST_FUTURES}"), at));
+                return Err(problem(format!("the number of futures must be 2 to {MOST_FUTURES}"), at));
             }
             ("futures", None) => question.futures = Some(FUTURES),
             ("from" | "until", None) => {
-                return Err(problem(format!("{word} needs the number of a week; {USAGE}"), at));
+                return Err(problem(format!("{word} needs a week number; {USAGE}"), at));
             }
             ("adopt", _) => {
-                let usage = "for instance: whatif adopt from 20: set_prices * 0.9";
-                return Err(problem(format!("adopt takes the week from which it is played; {usage}"), at));
+                let usage = "for example: whatif adopt from 20: set_prices * 0.9";
+                return Err(problem(format!("adopt needs from and a week; {usage}"), at));
             }
-            ("file", _) => return Err(problem("file needs the path of a file of text".to_owned(), at)),
+            ("file", _) => return Err(problem("file needs the path of a text file".to_owned(), at)),
             _ => return Err(problem(format!("{word} is not understood; {USAGE}"), at)),
         }
         if number.is_some() {
@@ -294,7 +296,7 @@ fn read(words: &str, column: usize) -> Result<Question, Problem> {
         }
     }
     if question.from == 0 {
-        return Err(problem(format!("name the week to begin with; {USAGE}"), 0));
+        return Err(problem(format!("give the first week; {USAGE}"), 0));
     }
     for alternative in rest.split('|').filter(|own| !own.trim().is_empty()) {
         let at = alternative.as_ptr() as usize - words.as_ptr() as usize;
@@ -320,7 +322,7 @@ fn as_text(comparison: &BranchComparison, futures: Option<&Futures>, days: u32) 
     text += &early.join("\n");
     for number in 1..comparison.branches.len() {
         text += &format!(
-            "\n{number}, at the end of week {}, beside the run as it was, future by future:",
+            "\n{number}, at the end of week {}, compared with the original run, future by future:",
             comparison.until.div_ceil(days)
         );
         let lines =
@@ -404,13 +406,13 @@ mod tests {
     fn what_is_no_question_is_refused_where_it_goes_wrong() {
         let said = |words: &str| read(words, 8).expect_err(words);
         assert_eq!(said("").column, 8);
-        assert!(said("from: set_prices * 2").text.starts_with("from needs the number of a week"));
+        assert!(said("from: set_prices * 2").text.starts_with("from needs a week number"));
         let wrong = said("from 20 to 30: drop 1");
         assert_eq!((wrong.column, wrong.text.starts_with("to is not understood")), (16, true));
-        assert!(said("adopt 5").text.starts_with("adopt takes the week"));
+        assert!(said("adopt 5").text.starts_with("adopt needs from and a week"));
         assert!(said("file").text.starts_with("file needs"));
         assert_eq!(read("from week 3", 1).map(|own| own.from), Ok(3));
-        assert!(said("from 20 futures 1: drop 1").text.starts_with("futures are drawn in numbers"));
+        assert!(said("from 20 futures 1: drop 1").text.starts_with("the number of futures"));
         let wrong = said("from 20: set_price * 2");
         assert_eq!((wrong.column, wrong.text.contains("did you mean set_prices")), (17, true));
     }

@@ -1,4 +1,4 @@
-//! `why FIGURE [WEEK]`: what a figure of a week changed by, and how much of it each cause brought.
+//! `why FIGURE [WEEK]`: the change of a figure in a week, and the contribution of each cause.
 
 use serde_json::{Value, json};
 
@@ -43,7 +43,7 @@ fn as_text(why: &Why) -> String {
     let rows: Vec<Vec<String>> = lines(why).into_iter().map(row).collect();
     let table = aligned(&["cause", "share", "what differed"].map(str::to_owned), &rows);
     format!(
-        "{}\n{}\n{table}the week was simulated again {} times",
+        "{}\n{}\n{table}the week was simulated {} more times",
         heading(why),
         equation(why),
         why.simulations

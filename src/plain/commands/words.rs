@@ -1,4 +1,4 @@
-//! What words mean: `explain` and `glossary`.
+//! `explain` and `glossary`: the meaning of terms.
 
 use serde_json::{Value, json};
 
@@ -8,11 +8,11 @@ use novamind_report::term_picture::term_picture_of;
 use novamind_session::Session;
 use novamind_tools::Numbers;
 
-/// `explain TERM`, and `what TERM`.
+/// `explain TERM` and `what TERM`.
 pub(super) fn explain(command: &str, words: &str, numbers: &Numbers) -> Answer {
     let column = command.chars().count() + 2;
     if words.is_empty() {
-        return Answer::usage(format!("{command} needs a term, for instance {command} runway"), column);
+        return Answer::usage(format!("{command} needs a term, for example {command} runway"), column);
     }
     match novamind_glossary::find(words) {
         Ok(found) => answer("explain", found, numbers),
@@ -26,7 +26,7 @@ pub(super) fn explain(command: &str, words: &str, numbers: &Numbers) -> Answer {
     }
 }
 
-/// The explanation of a subject.
+/// Returns the explanation of a subject.
 pub(super) fn answer(command: &str, subject: Subject, numbers: &Numbers) -> Answer {
     let told = Explanation::of(subject, numbers);
     let sections: Vec<Value> =
@@ -42,7 +42,7 @@ pub(super) fn answer(command: &str, subject: Subject, numbers: &Numbers) -> Answ
     Answer::done(command, told.as_text(), data)
 }
 
-/// `glossary [WORD]`; of a word that is a term with a picture, the picture follows.
+/// `glossary [WORD]`. If the word is a term with a picture, the picture follows.
 pub(super) fn glossary(word: &str, session: &Session) -> Answer {
     let wanted = word.to_lowercase();
     let holds = |term: &&Term| {
@@ -88,7 +88,7 @@ mod tests {
     use novamind_session::identifiers::Group;
     use novamind_session::{NewRun, Session};
 
-    /// Names of the fields of an answer; keys of maps by group are none.
+    /// Collects the names of the fields of an answer, except keys of maps by group.
     fn fields(value: &Value, found: &mut Vec<String>) {
         match value {
             Value::Object(map) => map.iter().for_each(|(name, value)| {
@@ -102,7 +102,7 @@ mod tests {
         }
     }
 
-    /// What stands before a colon, heads a part or a column of the dashboard; plans are no terms.
+    /// Returns the labels of a dashboard: words before a colon, headings and column heads, except plans.
     fn labels(dashboard: &str) -> Vec<String> {
         let mut found = Vec::new();
         for line in dashboard.lines() {

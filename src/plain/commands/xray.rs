@@ -1,4 +1,4 @@
-//! `xray …`: hidden state of debug runs and of runs that are over, in words (docs/debugging.md).
+//! `xray …`: hidden state of debug runs and finished runs, as text (docs/debugging.md).
 
 mod data;
 mod view_data;
@@ -19,29 +19,28 @@ use novamind_session::identifiers::Group;
 use novamind_session::rows_as_json;
 use novamind_tools::Refusal;
 
-/// What can be shown.
 const VIEWS: [&str; 9] =
     ["leads", "quality", "satisfaction", "reputation", "spillover", "rivals", "drift", "streams", "sql"];
 
 /// `help xray`
 pub(super) const IN_FULL: &str = "\
-xray leads GROUP [DAY] [R=1 …]   the equation of a group's leads; R=1 holds a factor
-xray quality GROUP [DAY]         what is delivered to a group on each plan: base, shared and own improvements, model tier
-xray satisfaction GROUP [DAY]    what moved the mean satisfaction of a group, term by term
-xray reputation GROUP [DAY]      what moved the reputation of a group: departures, its subscribers, other groups, bounds
-xray spillover [DAY]             how changes of reputation spilled over between groups, and what was dropped
-xray rivals [DAY]                what rivals could copy, what they did, and the move that is decided next
-xray drift [DAY]                 what the market has added to expectations and budgets, and when it adds the next time
-xray streams PART [N]            the first N draws that the next day makes of a part, and what follows
-xray sql [DAY] SELECT …          asks the database and the tables hidden.groups, hidden.customers, hidden.threads,
-                                 hidden.competitors, hidden.drift, hidden.pmi and hidden.factors, for instance
+xray leads GROUP [DAY] [R=1 …]   the equation of a group's leads; R=1 fixes a factor
+xray quality GROUP [DAY]         the quality that each plan delivers to a group: base, shared and own improvements, model tier
+xray satisfaction GROUP [DAY]    the terms that changed the mean satisfaction of a group
+xray reputation GROUP [DAY]      the terms that changed the reputation of a group: churn, its subscribers, other groups, bounds
+xray spillover [DAY]             the spillover of reputation between groups, and the part that was dropped
+xray rivals [DAY]                what competitors could copy, what they did, and their next decision
+xray drift [DAY]                 the drift of expectations and budgets so far, and its next day
+xray streams PART [N]            the first N draws of a part on the next day, and their results
+xray sql [DAY] SELECT …          queries the database and the tables hidden.groups, hidden.customers, hidden.threads,
+                                 hidden.competitors, hidden.drift, hidden.pmi and hidden.factors, for example
                                  xray sql SELECT day, reputation FROM hidden.groups WHERE group_id = 'S1'
-                                 hidden.customers shows DAY; all others have every day
-Debug runs and runs that are over. Each look is recorded. DAY is any day that has run, the last one if none is named.";
+                                 hidden.customers shows DAY; all other tables have every day
+For debug runs and finished runs. Each inspection is recorded. DAY is any simulated day, by default the last one.";
 
 impl Interpreter {
     pub(super) fn xray(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {
-        // Nothing is read of what is asked for before it is clear that it may be shown.
+        // Check the permission before parsing anything.
         if let Err(refusal) = self.session.refuse_to_look_inside() {
             return Ok(Answer::refused("xray", refusal));
         }
@@ -68,7 +67,7 @@ impl Interpreter {
                 Ok(asked) => asked,
                 Err(text) => return Ok(Err(Problem { text: text.to_owned(), column })),
             };
-            // What is stopped from here on is this query, though it has not begun.
+            // From here on a signal stops this query, even though it has not started.
             let ticket = interrupt.ticket();
             self.watch.enter_query(interrupt);
             self.session.inspect().xray_query_as(ticket, sql, day).map(Ok)
@@ -101,7 +100,7 @@ impl Interpreter {
         let shown = match numbers[..] {
             [customer] => self.session.inspect().lens(customer, None),
             [customer, day] => self.session.inspect().lens(customer, Some(day)),
-            _ => return Err(problem(arguments, "name a customer, and a day or none: lens 4711 151")),
+            _ => return Err(problem(arguments, "give a customer and optionally a day: lens 4711 151")),
         };
         Ok(match shown {
             Ok(Lens::Individual(lens)) => {
@@ -117,17 +116,17 @@ impl Interpreter {
     }
 }
 
-/// The day that is asked for, if one is, and the statement.
+/// Splits an optional day from the statement.
 fn day_and_statement(rest: &str) -> Result<(Option<u32>, &str), &'static str> {
     let rest = statement_of_xray(rest).unwrap_or_default();
     let digits = rest.find(|letter: char| !letter.is_ascii_digit()).unwrap_or(rest.len());
     let (day, sql) = rest.split_at(digits);
     let day = match day {
         "" => None,
-        day => Some(day.parse().map_err(|_| "no run has so many days")?),
+        day => Some(day.parse().map_err(|_| "the day is too large")?),
     };
     match sql.trim() {
-        "" => Err("write a statement: xray sql SELECT day, pmi FROM hidden.pmi"),
+        "" => Err("give a statement: xray sql SELECT day, pmi FROM hidden.pmi"),
         sql => Ok((day, sql)),
     }
 }
@@ -136,7 +135,7 @@ fn views() -> String {
     format!("xray shows {}", VIEWS.join(", "))
 }
 
-/// What is to be shown, and of what.
+/// Returns the view and its arguments.
 fn view_of(arguments: &[Argument]) -> Result<(&str, &[Argument]), Problem> {
     match arguments.split_first() {
         Some((Argument { key: None, value: Value::String(view), .. }, rest)) => Ok((view, rest)),
@@ -152,11 +151,11 @@ fn unknown_view(view: &str, argument: &Argument) -> Problem {
     Problem { text, column: argument.column }
 }
 
-/// A group, and a day or none, for a view.
+/// Parses a group and an optional day for a view.
 fn group_and_day(view: &str, arguments: &[&Argument]) -> Result<(Group, Option<u32>), Problem> {
     let at = |argument: &Argument, text: String| Problem { text, column: argument.column };
     let column = arguments.get(2).map_or(1, |argument| argument.column);
-    let usage = || Problem { text: format!("name a group, and a day or none: xray {view} S2 84"), column };
+    let usage = || Problem { text: format!("give a group and optionally a day: xray {view} S2 84"), column };
     let (first, day) = match arguments {
         [first] => (first, None),
         [first, day] => (first, Some(day)),
@@ -177,7 +176,7 @@ fn whole_number(argument: &Argument) -> Result<u32, Problem> {
     argument.whole_number()
 }
 
-/// `R=1`: a factor that is held.
+/// Parses a fixed factor, as in `R=1`.
 fn held_factor(argument: &Argument) -> Result<(LeadFactor, f64), Problem> {
     let name = argument.key.as_deref().unwrap_or_default();
     let wrong = |text: String| Problem { text, column: argument.column };
@@ -188,5 +187,5 @@ fn held_factor(argument: &Argument) -> Result<(LeadFactor, f64), Problem> {
     let value = argument.value.as_f64().filter(|value| *value >= 0.0);
     value
         .map(|value| (factor, value))
-        .ok_or_else(|| wrong(format!("{factor} is held at a number of at least 0")))
+        .ok_or_else(|| wrong(format!("the value of {factor} must be a number from 0")))
 }

@@ -1,4 +1,4 @@
-//! The Python client: a package of the standard library alone, its modules made of the catalogue.
+//! The Python client: a package without dependencies, with modules generated from the catalog.
 
 mod module;
 
@@ -15,7 +15,7 @@ const PACKAGE: &str = include_str!("../../../assets/client/package.py");
 const PROJECT: &str = include_str!("../../../assets/client/pyproject.toml");
 const NOTEBOOK: &str = include_str!("../../../assets/client/twelve-weeks.ipynb");
 
-/// Writes the package into a folder, where `pip install` takes it; what it wrote before is replaced.
+/// Writes the package to a folder for `pip install`. Replaces the files of an earlier client.
 ///
 /// # Errors
 /// The folder cannot be written.
@@ -33,7 +33,7 @@ pub fn write_client(folder: &Path) -> Result<(), RunError> {
     files.extend(Module::ALL.map(|module| {
         (package.join(format!("{}.py", module::name(module))), module::text(module, &numbers))
     }));
-    // A program that reads them at this moment is not disturbed.
+    // Files are replaced atomically, because a program may be reading them.
     let is_new =
         |(path, text): &&(PathBuf, String)| std::fs::read(path).ok().as_deref() != Some(text.as_bytes());
     files.iter().filter(is_new).try_for_each(|(path, text)| write_whole(path, text.as_bytes()))

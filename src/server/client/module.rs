@@ -1,35 +1,35 @@
-//! One module of the Python client: a method and a function for each tool, with hints and docstring of the catalogue.
+//! A module of the Python client: a method and a function for each tool, with type hints and docstrings from the catalog.
 
 use std::fmt::Write;
 
 use crate::schema;
 use novamind_tools::{Argument, ArgumentKind, Module, Numbers, Spec, ToolId};
 
-/// Columns of a docstring.
+/// Line width of a docstring.
 const WIDTH: usize = 116;
 
-/// Name of the module in Python.
+/// Returns the name of the module in Python.
 pub fn name(module: Module) -> &'static str {
-    // A module named time would hide that of the standard library from the others.
+    // A module `time` would shadow that of the standard library.
     if module == Module::Time { "scripts" } else { module.id() }
 }
 
-/// Name of the class in Python that holds the tools of a module.
+/// Returns the name of the class with the tools of a module.
 fn class(module: Module) -> String {
     let name = name(module);
     name[..1].to_uppercase() + &name[1..]
 }
 
-/// The source of a module: a class whose methods are the tools, and functions that call those of the default connection.
+/// Returns the source of a module: a class whose methods are the tools, and functions that use the default connection.
 pub fn text(module: Module, numbers: &Numbers) -> String {
     let (name, class) = (name(module), class(module));
     let mut text = format!(
-        "\"\"\"The tools of {name}.\n\nEach function calls the tool of its name; arguments left out are not sent. A refusal \
+        "\"\"\"The tools of {name}.\n\nEach function calls the tool of the same name. Omitted arguments are not sent. A rejection \
          raises NovamindError.\n\"\"\"\nfrom __future__ import annotations\n\nfrom typing import Any, Dict, List, Optional\n\n\
          from .connection import Connection, default\n\n\nclass {class}:\n    \"\"\"The tools of {name}, of one run.\"\"\"\n\n    \
          def __init__(self, connection: Connection) -> None:\n        self._connection = connection\n"
     );
-    // These have functions of the package.
+    // The package has separate functions for these.
     let elsewhere = [ToolId::NextWeek, ToolId::Query, ToolId::GetVars];
     let own = || schema::specs().filter(|spec| spec.module == module && !elsewhere.contains(&spec.id));
     own().for_each(|spec| text += &method(spec, numbers));
@@ -99,7 +99,7 @@ fn hint(kind: &ArgumentKind) -> &'static str {
     }
 }
 
-/// Words in lines; a backslash of a text would begin an escape of Python.
+/// Wraps text into lines and escapes backslashes for Python.
 fn wrapped(words: &str, first: usize, others: usize) -> String {
     let mut text = String::new();
     let mut line = " ".repeat(first);

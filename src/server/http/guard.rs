@@ -1,6 +1,6 @@
-//! Who may ask: programs of this machine that name it, and know the token if there is one.
+//! Access control: accepts requests of programs on this machine that address it by name and have the token, if one is required.
 //!
-//! Pages in a browser can reach loopback ports. They cannot choose the `Host` header, and what they send carries an `Origin`.
+//! Web pages can reach loopback ports, but they cannot choose the `Host` header, and their requests carry an `Origin`.
 
 use std::io;
 use std::path::Path;
@@ -11,7 +11,7 @@ use axum::http::header::{AUTHORIZATION, HOST, ORIGIN};
 use crate::request::{Answer, Status};
 use novamind_record::error::RunError;
 
-/// What requests must carry.
+/// Requirements on requests.
 #[derive(Debug, Clone)]
 pub struct Guard {
     /// The token of `Authorization: Bearer`.
@@ -19,16 +19,17 @@ pub struct Guard {
 }
 
 impl Guard {
-    /// Looks at the head of a request: none if it may be asked, else the answer.
+    /// Checks the head of a request. Returns the rejection, or `None` if the request is allowed.
     pub fn bar(&self, head: &HeaderMap) -> Option<Answer> {
         let text = |name| head.get(name).map(|value| value.to_str().unwrap_or("?"));
         if head.get_all(HOST).iter().count() != 1 || !text(HOST).is_some_and(is_loopback) {
-            let message = "a request needs one Host header, and it must name this machine: 127.0.0.1, localhost or [::1]";
+            let message =
+                "a request needs exactly one Host header, which must be 127.0.0.1, localhost or [::1]";
             return Some(Answer::wrong(Status::Forbidden, "host", message));
         }
         let origin = text(ORIGIN).map(|origin| origin.split_once("://").map_or("?", |(_, place)| place));
         if !origin.is_none_or(is_loopback) {
-            let message = "requests from pages of other sites are refused";
+            let message = "requests from web pages of other sites are rejected";
             return Some(Answer::wrong(Status::Forbidden, "origin", message));
         }
         let expected = self.token.as_deref()?;
@@ -40,13 +41,13 @@ impl Guard {
     }
 }
 
-/// Returns the token of an `Authorization` header. The name of the scheme is read in any letter case.
+/// Returns the token of an `Authorization` header. The scheme is case-insensitive.
 fn token_in(header: &str) -> Option<&str> {
     let (scheme, token) = header.split_once(' ')?;
     scheme.eq_ignore_ascii_case("bearer").then(|| token.trim_start_matches(' '))
 }
 
-/// Whether `HOST` or `HOST:PORT` names this machine.
+/// Returns whether `HOST` or `HOST:PORT` is this machine.
 fn is_loopback(host: &str) -> bool {
     let name = match host.strip_prefix("[::1]") {
         Some(rest) => return rest.is_empty() || is_port(rest),
@@ -63,15 +64,15 @@ fn is_digits(text: &str) -> bool {
     !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-/// Compares in a time that does not tell how much is right.
+/// Compares in constant time, so that the duration does not reveal a correct prefix.
 fn same(given: &str, expected: &str) -> bool {
     blake3::hash(given.as_bytes()) == blake3::hash(expected.as_bytes())
 }
 
-/// A token that nobody guesses.
+/// Returns a random token.
 ///
 /// # Errors
-/// The system has no chance to give.
+/// The system returns no random numbers.
 pub fn new_token() -> Result<String, RunError> {
     let mut bytes = [0u8; 24];
     getrandom::fill(&mut bytes).map_err(|error| {
@@ -80,10 +81,10 @@ pub fn new_token() -> Result<String, RunError> {
     Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-/// Writes a file that nobody else can read.
+/// Creates a file that only its owner can read.
 ///
 /// # Errors
-/// It is there already, or cannot be written.
+/// The file exists or cannot be written.
 pub fn write_private(path: &Path, text: &str) -> io::Result<()> {
     use std::io::Write;
     let mut options = std::fs::OpenOptions::new();

@@ -1,4 +1,4 @@
-//! The HTTP door: 127.0.0.1 only, one run, bounded in every direction.
+//! The HTTP server for one run, on 127.0.0.1 only, with limits on connections, sizes and times.
 
 mod body;
 mod guard;
@@ -28,33 +28,33 @@ use novamind_session::Session;
 use routes::Served;
 use shutdown::Shutdown;
 
-/// Connections that are open at once. Further ones are refused with status 503.
+/// Maximum number of open connections. Further ones are rejected with status 503.
 const MAX_CONNECTIONS: usize = 64;
-/// A refused connection is closed after this time at the latest.
+/// Time after which a rejected connection is closed at the latest.
 const REFUSAL_DEADLINE: Duration = Duration::from_secs(2);
-/// A head of a request that takes longer closes its connection.
+/// Maximum time for the head of a request to arrive.
 const HEAD_DEADLINE: Duration = Duration::from_secs(10);
-/// Requests in hand when the server is asked to stop have this long to arrive and be answered.
+/// Time for pending requests to arrive and be answered after a request to stop.
 const LAST_REQUESTS: Duration = Duration::from_secs(60);
-/// Between two looks for code that keeps a server from ending.
+/// Interval between attempts to stop code that keeps the server from ending.
 const BETWEEN_STOPS: Duration = Duration::from_millis(100);
 
-/// How a run is served.
+/// Options of the server.
 #[derive(Debug, Clone, Default)]
 pub struct HttpOptions {
-    /// Requests must carry the token in this file.
+    /// File with the token that requests must carry.
     pub token: Option<PathBuf>,
 }
 
-/// A port that is held before there is a run to serve on it: a run that cannot be served is not begun.
+/// A bound port. It is bound before the run is created, so that no run is created that cannot be served.
 #[derive(Debug)]
 pub struct HeldPort(std::net::TcpListener);
 
 impl HeldPort {
-    /// Takes a port of 127.0.0.1; any free one if none is named.
+    /// Binds a port of 127.0.0.1, or any free one if `port` is `None`.
     ///
     /// # Errors
-    /// It is taken.
+    /// The port is in use.
     pub fn take(port: Option<u16>) -> Result<HeldPort, RunError> {
         let address = (Ipv4Addr::LOCALHOST, port.unwrap_or(0));
         let bound = std::net::TcpListener::bind(address).and_then(|listener| {
@@ -64,17 +64,18 @@ impl HeldPort {
         match bound {
             Ok(listener) => Ok(HeldPort(listener)),
             Err(error) => Err(RunError::NotPossible(format!(
-                "port {} of 127.0.0.1 cannot be used ({error}); name another one, or none for any free one",
+                "cannot use port {} of 127.0.0.1 ({error}); give another one, or none to use any free port",
                 address.1
             ))),
         }
     }
 }
 
-/// Serves a run on a port until a signal asks to stop. `ready` is told where, once requests are taken; `on_defect` hears of defects of ours.
+/// Serves a run until a signal or a request asks to stop. `ready` is called with the address when requests are accepted;
+/// `on_defect` is called with reports of internal errors.
 ///
 /// # Errors
-/// The file of the token cannot be read; the disk did not take the end of the record.
+/// The token file cannot be read, or the end of the record cannot be written.
 pub fn serve_http(
     session: Session,
     held: HeldPort,
@@ -106,9 +107,9 @@ pub fn serve_http(
         take_connections(&listener, router, shutdown, &owner).await;
         Ok(())
     });
-    // Requests that were cut off hold handles of the owner.
+    // Requests that were cut off still hold handles of the owner.
     drop(runtime);
-    // While the run is still held: nobody else can have put up another one.
+    // The run is still locked, so no other server can have written an announcement.
     if let Some(folder) = &folder {
         Announcement::take_down(folder);
     }
@@ -116,12 +117,12 @@ pub fn serve_http(
     served
 }
 
-/// The token of a file, made with it if there is none.
+/// Reads the token of a file, or creates the file with a new one.
 fn token_of(path: &Path) -> Result<String, RunError> {
     let failed = RunError::io(path);
     match std::fs::read_to_string(path) {
         Ok(text) if !text.trim().is_empty() => Ok(text.trim().to_owned()),
-        Ok(_) => Err(failed(io::Error::new(io::ErrorKind::InvalidData, "the file of the token is empty"))),
+        Ok(_) => Err(failed(io::Error::new(io::ErrorKind::InvalidData, "the token file is empty"))),
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             let token = guard::new_token()?;
             guard::write_private(path, &token).map_err(failed)?;
@@ -146,7 +147,7 @@ async fn take_connections(
         let stream = tokio::select! {
             accepted = listener.accept() => match accepted {
                 Ok((stream, _)) => stream,
-                // Too many open files, a connection that is gone already: the next one may do.
+                // Too many open files, or a connection that has gone; the next attempt may succeed.
                 Err(_) => {
                     tokio::time::sleep(Duration::from_millis(20)).await;
                     continue;
@@ -167,12 +168,12 @@ async fn take_connections(
             http.serve_connection(TokioIo::new(stream), TowerToHyperService::new(router.clone()));
         let watched = open.watch(connection);
         tokio::spawn(async move {
-            // A client that goes away in the middle is no concern of the run.
+            // A client that disconnects does not affect the run.
             let _ = watched.await;
             drop(place);
         });
     }
-    // Again and again: a week has several calculations, and a request that waits may hold a script.
+    // Repeated, because a week has several calculations, and a waiting request may contain a script.
     let stop_code = async {
         loop {
             owner.stop_code();
@@ -187,8 +188,7 @@ async fn take_connections(
     }
 }
 
-/// Answers a connection for which there is no room, and reads what it sends until it closes: a connection that is closed with
-/// unread data can lose the answer.
+/// Rejects a connection, and reads its input until it closes. Closing a connection with unread data can lose the response.
 async fn refuse(mut stream: TcpStream) {
     let message =
         format!("the server has {MAX_CONNECTIONS} open connections; send the request again in a second");
@@ -198,7 +198,7 @@ async fn refuse(mut stream: TcpStream) {
          connection: close\r\n\r\n",
         body.len()
     );
-    // Clients take an answer that comes before they have asked for a fault of the connection.
+    // Some clients report a response that arrives before their request as a connection error.
     let mut unread = [0; 4096];
     let _ = tokio::time::timeout(REFUSAL_DEADLINE / 2, stream.read(&mut unread)).await;
     let answered = stream.write_all(format!("{head}{body}").as_bytes()).await;

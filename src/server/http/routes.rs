@@ -1,4 +1,4 @@
-//! The routes: what each takes of its body, and which status its answer has.
+//! The routes: how each reads its body, and the status of its response.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ use novamind_database::tables;
 use novamind_tools::describe::{ToolDocument, document};
 use novamind_tools::{CATALOGUE, Numbers, ToolId};
 
-/// What the routes need.
+/// State of the routes.
 #[derive(Clone)]
 struct Routed {
     handle: Handle,
@@ -30,16 +30,16 @@ struct Routed {
     served: Served,
 }
 
-/// What is served, and how to ask the server to stop.
+/// The run of the server and its stop notification.
 #[derive(Clone)]
 pub struct Served {
-    /// The run.
+    /// Run id.
     pub run: String,
-    /// Is notified when a request asks to stop.
+    /// Notified when a request asks to stop.
     pub stop: Arc<Notify>,
 }
 
-/// Every route, behind the guard.
+/// Returns all routes, protected by the guard.
 pub fn router(handle: Handle, guard: Guard, numbers: Arc<Numbers>, served: Served) -> Router {
     let door = Routed { handle, guard: Arc::new(guard), numbers, served };
     Router::new()
@@ -125,7 +125,7 @@ async fn call(State(door): State<Routed>, body: Body) -> Response {
         Ok(fields) => fields,
         Err(wrong) => return closing(response(&wrong)),
     };
-    // Where the name of the tool is no text, it names no tool.
+    // A name that is not a text cannot be a tool.
     let tool = match fields.take("tool") {
         Value::String(name) => name,
         Value::Null => String::new(),
@@ -135,7 +135,7 @@ async fn call(State(door): State<Routed>, body: Body) -> Response {
         Value::Null => json!({}),
         given => given,
     };
-    // Next to the arguments or among them, as the id.
+    // The request id may be next to the arguments or among them.
     if let (Value::Object(args), day @ Value::Number(_)) = (&mut args, fields.take("expected_day")) {
         args.entry("expected_day").or_insert(day);
     }
@@ -200,7 +200,7 @@ fn response(answer: &Answer) -> Response {
     response
 }
 
-/// A response after which the connection ends: what is left of a body that was not read would be taken for the next request.
+/// Closes the connection after the response. Otherwise the unread rest of a body would be taken for the next request.
 fn closing(mut response: Response) -> Response {
     response.headers_mut().insert(header::CONNECTION, header::HeaderValue::from_static("close"));
     response

@@ -1,11 +1,11 @@
-//! Signals that ask a server to stop.
+//! Signals and requests that stop a server.
 
 use std::io;
 use std::sync::Arc;
 
 use tokio::sync::Notify;
 
-/// Waits for SIGINT, SIGTERM and SIGHUP, where there are none for ctrl-c, and for a request to stop.
+/// Waits for SIGINT, SIGTERM and SIGHUP, or ctrl-c on other systems, and for a request to stop.
 pub struct Shutdown {
     request: Arc<Notify>,
     #[cfg(unix)]
@@ -13,7 +13,7 @@ pub struct Shutdown {
 }
 
 impl Shutdown {
-    /// From now on such a signal no longer ends the program at once.
+    /// Starts listening. From now on these signals do not end the program at once.
     #[cfg(unix)]
     pub fn listen() -> io::Result<Shutdown> {
         use tokio::signal::unix::{SignalKind, signal};
@@ -28,18 +28,18 @@ impl Shutdown {
         })
     }
 
-    /// From now on ctrl-c no longer ends the program at once.
+    /// Starts listening. From now on ctrl-c does not end the program at once.
     #[cfg(not(unix))]
     pub fn listen() -> io::Result<Shutdown> {
         Ok(Shutdown { request: Arc::default() })
     }
 
-    /// What a request to stop notifies.
+    /// Returns the notification for a request to stop.
     pub fn asking(&self) -> Arc<Notify> {
         self.request.clone()
     }
 
-    /// Returns when the server is asked to stop.
+    /// Completes when the server is asked to stop.
     #[cfg(unix)]
     pub async fn asked(&mut self) {
         let [interrupt, terminate, hangup] = &mut self.signals;
@@ -51,7 +51,7 @@ impl Shutdown {
         }
     }
 
-    /// Returns when the server is asked to stop.
+    /// Completes when the server is asked to stop.
     #[cfg(not(unix))]
     pub async fn asked(&mut self) {
         tokio::select! {

@@ -1,4 +1,4 @@
-//! The door for clients of the Model Context Protocol, on standard input and output.
+//! The Model Context Protocol interface on standard input and output.
 
 mod refusal;
 mod resources;
@@ -28,14 +28,14 @@ use novamind_record::trajectory::record::Via;
 use novamind_session::Session;
 use novamind_tools::Numbers;
 
-/// What a client is told first.
+/// Instructions for clients.
 const INSTRUCTIONS: &str = "You run a simulated AI subscription company. Every tool call acts on the same run; time passes only \
      with next_week. Read the resources novamind://goal and novamind://manual first.";
 
-/// Serves a run on standard input and output until the input ends; `on_defect` hears of defects of ours.
+/// Serves a run on standard input and output until the input ends. `on_defect` is called with reports of internal errors.
 ///
 /// # Errors
-/// The disk did not take the end of the record, or standard input and output cannot be used.
+/// The end of the record cannot be written, or standard input and output cannot be used.
 pub fn serve_mcp(session: Session, on_defect: OnDefect) -> Result<(), RunError> {
     let numbers = session.numbers();
     let folder = session.folder().map(PathBuf::from);
@@ -52,13 +52,13 @@ pub fn serve_mcp(session: Session, on_defect: OnDefect) -> Result<(), RunError> 
         let (streams, writing) = stdio::open();
         let running = McpDoor { handle, numbers, goal }.serve(streams).await.map_err(io::Error::other)?;
         let ended = running.waiting().await.map_err(io::Error::other);
-        // What was answered last may not be written yet.
+        // The last answer may not have been written yet.
         writing.await.map_err(io::Error::other)?;
         ended
     });
-    // Reading standard input cannot be cancelled, and nothing is waited for any more.
+    // Reading standard input cannot be canceled, and its result is not needed.
     runtime.shutdown_background();
-    // While the run is still held: nobody else can have put up another one.
+    // The run is still locked, so no other server can have written an announcement.
     if let Some(folder) = &folder {
         Announcement::take_down(folder);
     }
@@ -66,7 +66,7 @@ pub fn serve_mcp(session: Session, on_defect: OnDefect) -> Result<(), RunError> 
     served.map(drop).map_err(RunError::io(Path::new("standard input")))
 }
 
-/// One client and its run.
+/// A client and its run.
 struct McpDoor {
     handle: Handle,
     numbers: Arc<Numbers>,

@@ -1,25 +1,26 @@
-//! The answer to a client whose run cannot be opened: without it the client sees only a closed connection.
+//! The error for a client whose run cannot be opened. Without it the client would only see a closed connection.
 
 use std::io::{BufRead, IsTerminal, Write, stdin, stdout};
 
 use serde_json::{Value, json};
 
-/// Code of errors that a server defines itself.
+/// Code for errors defined by a server.
 const SERVER_ERROR: i32 = -32000;
 
-/// Answers the first request on standard input, which is `initialize`, with an error. Returns at once at a terminal.
+/// Answers the first request on standard input, which is `initialize`, with an error. Returns at once if standard input is a
+/// terminal.
 pub fn refuse_mcp(problem: &str) {
     if stdin().is_terminal() {
         return;
     }
     if let Some(refusal) = refusal(stdin().lock(), problem) {
         let mut out = stdout().lock();
-        // A client that has gone away needs no answer.
+        // The client may have gone.
         let _ = writeln!(out, "{refusal}").and_then(|()| out.flush());
     }
 }
 
-/// Returns the error for the first request in messages. Returns `None` if they end before there is one.
+/// Returns the error for the first request among messages, or `None` if there is no request.
 fn refusal(messages: impl BufRead, problem: &str) -> Option<Value> {
     let messages = messages.lines().map_while(Result::ok);
     let id =

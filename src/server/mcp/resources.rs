@@ -1,4 +1,4 @@
-//! What a client can read without calling a tool: the goal, the dashboard, the manual of tools, the tables, the notes.
+//! Resources that a client can read without a tool call: goal, dashboard, manual, tables, notes.
 
 use rmcp::ErrorData;
 use rmcp::model::{ReadResourceResult, Resource, ResourceContents};
@@ -15,15 +15,15 @@ const MANUAL: &str = "novamind://manual";
 const TABLES: &str = "novamind://tables";
 const MEMO: &str = "novamind://memo";
 
-/// Every resource.
+/// Returns all resources.
 pub fn all() -> Vec<Resource> {
     let one = |uri: &str, name: &str, title: &str| {
         Resource::new(uri, name).with_title(title).with_mime_type("text/plain")
     };
     vec![
-        one(GOAL, "goal", "What the run is about: goal, calendar, rules"),
+        one(GOAL, "goal", "Goal, calendar and rules of the run"),
         one(DASHBOARD, "dashboard", "The dashboard of the last week"),
-        one(MANUAL, "manual", "Every tool: arguments, effect, cost, refusals, result"),
+        one(MANUAL, "manual", "Every tool: arguments, effect, cost, rejections, result"),
         one(TABLES, "tables", "Every table that can be queried, and its columns"),
         one(MEMO, "memo", "The notes of the run"),
     ]
@@ -32,7 +32,7 @@ pub fn all() -> Vec<Resource> {
 /// Reads a resource.
 ///
 /// # Errors
-/// There is none of that name.
+/// There is no such resource.
 pub async fn read(
     uri: &str,
     handle: &Handle,
@@ -51,7 +51,7 @@ pub async fn read(
             texts.join("\n")
         }
         _ => {
-            let message = format!("there is no resource {uri}; resources/list names them");
+            let message = format!("there is no resource {uri}; resources/list lists them");
             return Err(ErrorData::resource_not_found(message, None));
         }
     };

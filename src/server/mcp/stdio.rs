@@ -1,6 +1,6 @@
-//! Standard input and output, line by line: a line that is not JSON is answered with a parse error.
+//! Standard input and output of the protocol. Lines that are not JSON are answered with a parse error.
 //!
-//! The library that speaks the protocol drops such lines, and a client that sent one would wait forever.
+//! The protocol library drops such lines, and their sender would wait forever.
 
 use serde_json::{Value, json};
 use tokio::io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader, DuplexStream, duplex};
@@ -9,12 +9,12 @@ use tokio::task::JoinHandle;
 
 use crate::not_numbers;
 
-/// Bytes between the streams and the protocol.
+/// Size of the buffer between the streams and the protocol, in bytes.
 const BUFFER_BYTES: usize = 64 * 1024;
-/// Longest message, in bytes.
+/// Maximum size of a message in bytes.
 const MAX_MESSAGE_BYTES: usize = 16 * 1024 * 1024;
 
-/// Opens standard input and output for the protocol. The task ends when everything is written.
+/// Opens standard input and output for the protocol. The task ends when all output is written.
 pub fn open() -> ((DuplexStream, DuplexStream), JoinHandle<()>) {
     let (input, forward) = duplex(BUFFER_BYTES);
     let (output, answers) = duplex(BUFFER_BYTES);
@@ -43,7 +43,7 @@ async fn read(mut forward: DuplexStream, problems: UnboundedSender<String>) {
         if line.trim_ascii().is_empty() {
             continue;
         }
-        // Into a value: that way the depth is checked as the protocol checks it.
+        // Parsing to a value checks the depth in the same way as the protocol library.
         match serde_json::from_slice::<Value>(&line) {
             Ok(_) => {
                 if forward.write_all(&line).await.is_err() {
@@ -61,7 +61,7 @@ async fn read(mut forward: DuplexStream, problems: UnboundedSender<String>) {
     }
 }
 
-/// Reads the rest of a line in bounded pieces.
+/// Skips the rest of a line in pieces of limited size.
 async fn skip_line(input: &mut BufReader<tokio::io::Stdin>) {
     let mut piece = Vec::new();
     loop {
@@ -73,7 +73,7 @@ async fn skip_line(input: &mut BufReader<tokio::io::Stdin>) {
     }
 }
 
-/// Writes the lines of the protocol and those about lines that did not reach it, each whole.
+/// Writes protocol messages and parse errors, each as a complete line.
 async fn write(answers: DuplexStream, mut problems: UnboundedReceiver<String>) {
     let mut output = tokio::io::stdout();
     let mut answers = BufReader::new(answers).lines();
@@ -92,7 +92,7 @@ async fn write(answers: DuplexStream, mut problems: UnboundedReceiver<String>) {
     }
 }
 
-/// The answer to a message that is not JSON; with its id if it is JSON but for `NaN` or `Infinity`.
+/// Returns the parse error for a message. It carries the id if only `NaN` or `Infinity` makes the message invalid JSON.
 fn parse_error(id: &Value, message: &str) -> String {
     json!({ "jsonrpc": "2.0", "id": id, "error": { "code": -32700, "message": message } }).to_string()
 }

@@ -1,4 +1,4 @@
-//! The tools of the catalogue as a client of the protocol sees them.
+//! The tools of the catalog in the form of the protocol.
 
 use std::sync::Arc;
 
@@ -10,12 +10,12 @@ use crate::schema;
 use novamind_tools::describe::manual;
 use novamind_tools::{Kind, Numbers, Spec};
 
-/// Every tool.
+/// Returns all tools.
 pub fn all(numbers: &Numbers) -> Vec<Tool> {
     schema::specs().map(|spec| tool(spec, numbers)).collect()
 }
 
-/// The tool of a name.
+/// Returns the tool of a name.
 pub fn named(name: &str, numbers: &Numbers) -> Option<Tool> {
     schema::specs().find(|spec| spec.name() == name).map(|spec| tool(spec, numbers))
 }
@@ -38,7 +38,7 @@ fn hints(spec: &Spec) -> ToolAnnotations {
         .open_world(false)
 }
 
-/// An answer as the result of a call: a refusal is an error that the client reads, never one of the protocol.
+/// Converts an answer to the result of a call. A rejection is an error that the model reads, not a protocol error.
 pub fn result(answer: Answer) -> CallToolResult {
     if answer.succeeded() {
         CallToolResult::structured(answer.body)

@@ -18,7 +18,7 @@ fn collect(lab: &Home, sources: &[&Path], more: &[&str]) -> (Said, std::path::Pa
     (lab.run(&arguments), out)
 }
 
-/// A copy of the folder of a run.
+/// Copies the folder of a run.
 fn copy(from: &Path, to: &Path) {
     fs::create_dir_all(to).expect("a folder");
     for name in ["run.toml", "trajectory.jsonl"] {
@@ -30,7 +30,7 @@ fn copy(from: &Path, to: &Path) {
 fn every_run_is_taken_once_in_its_latest_state() {
     let (one, two, lab) = (Home::new(), Home::new(), Home::new());
     let (first, second) = (played(&one, "P01"), played(&two, "P02"));
-    // An early archive, and the run played on since.
+    // An early archive, and the run continued after it.
     let (archive, _) = export(&one, &first, "early.tar.gz");
     assert_eq!(one.play(&["--run", &id(&first)], "next \"the end\" naive\n").code, 0);
     let sources = [one.runs(), archive, two.runs()];
@@ -45,7 +45,7 @@ fn every_run_is_taken_once_in_its_latest_state() {
     assert!(out.join(format!("{}.tar.gz", id(&second))).exists() && out.join("events.csv").exists());
     let hidden = fs::read_dir(&out).expect("a folder").flatten();
     assert!(!hidden.into_iter().any(|entry| entry.file_name().to_string_lossy().starts_with('.')));
-    // Again, into the same folder: nothing in it is a source.
+    // Again, into the same folder: its contents are not a source.
     let (said, out) = collect(&lab, &[lab.0.path(), &one.runs()], &["--json"]);
     assert_eq!(said.code, 0, "{}{}", said.out, said.err);
     let object: Value = serde_json::from_str(&said.out).expect("JSON");
@@ -57,7 +57,7 @@ fn every_run_is_taken_once_in_its_latest_state() {
 fn contradictions_shared_labels_and_damage_are_told() {
     let (one, two, lab) = (Home::new(), Home::new(), Home::new());
     let first = played(&one, "P01");
-    // The same run, played on apart on two machines.
+    // The same run, continued differently on two machines.
     let copied = two.runs().join(id(&first));
     copy(&first, &copied);
     for (home, price) in [(&one, "A=13"), (&two, "A=14")] {

@@ -1,5 +1,5 @@
-//! Handing runs over: the same run gives the same archive, an interrupted export leaves nothing, and a run comes into
-//! the folder of the person who played it.
+//! Transferring runs: the same run gives the same archive, an interrupted export leaves nothing, and a run is imported to the folder
+//! of its player.
 
 use std::fs;
 use std::path::Path;
@@ -44,7 +44,7 @@ fn an_interrupted_export_leaves_nothing_on_the_stick() {
     };
     let (mut tries, mut interrupted) = (0, 0);
     while interrupted < 3 {
-        // Now and then it is done before the signal arrives.
+        // Sometimes the export finishes before the signal arrives.
         tries += 1;
         assert!(tries < 100, "it was never interrupted");
         let mut program = home.program();

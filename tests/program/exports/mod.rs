@@ -1,5 +1,4 @@
-//! Runs that are handed over: archives out and in, their tables, the session summary, runs side by side, and the schema
-//! of the lines.
+//! Exported runs: archives, their tables, the session summary, comparisons of runs, and the schema of the lines.
 
 mod collected;
 mod handover;
@@ -29,7 +28,7 @@ next \"as planned\" naive
 next \"as planned\" naive
 ";
 
-/// A baseline run of three weeks by a participant; its folder.
+/// Plays a baseline run of three weeks by a participant; returns its folder.
 fn played(home: &Home, participant: &str) -> PathBuf {
     let before: Vec<PathBuf> = folders(&home.runs());
     let options = ["--mode", "baseline", "--participant", participant, "--seed", "7"];
@@ -56,7 +55,7 @@ fn import(home: &Home, archive: &Path) -> Said {
     home.run(&["runs", "import", &text(archive)])
 }
 
-/// The files of a plain archive.
+/// Returns the files of a plain archive.
 fn contents(archive: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut files = BTreeMap::new();
     for entry in tar::Archive::new(fs::File::open(archive).expect("a file")).entries().expect("entries") {
@@ -69,7 +68,7 @@ fn contents(archive: &Path) -> BTreeMap<String, Vec<u8>> {
     files
 }
 
-/// An archive of files, as anybody could make one.
+/// Writes an archive of arbitrary files.
 fn forged(archive: &Path, files: &[(String, Vec<u8>)]) {
     let mut builder = tar::Builder::new(fs::File::create(archive).expect("a file"));
     for (name, bytes) in files {
@@ -82,7 +81,7 @@ fn forged(archive: &Path, files: &[(String, Vec<u8>)]) {
 
 fn header(name: &str, size: u64, kind: tar::EntryType) -> tar::Header {
     let mut header = tar::Header::new_ustar();
-    // Past the checks of the crate, which does not write dangerous names.
+    // Bypasses the checks of the crate, which does not write dangerous names.
     header.as_old_mut().name[..name.len()].copy_from_slice(name.as_bytes());
     header.set_size(size);
     header.set_mode(0o644);
@@ -107,7 +106,7 @@ fn a_run_goes_out_sealed_and_comes_back_the_same() {
         assert_eq!(imported.code, 0, "{}", imported.err);
         assert!(imported.out.contains(&checksum), "{}", imported.out);
     }
-    // The second archive found the run there already.
+    // The second archive found an existing run.
     let there = other.runs().join(id(&run));
     for file in ["run.toml", "trajectory.jsonl", "memo.md"] {
         assert_eq!(bytes_of(&there, file), bytes_of(&run, file), "{file}");
@@ -129,7 +128,7 @@ fn another_record_of_a_run_is_told_apart_and_imported_under_a_name_of_its_own() 
     let run = played(&home, "P01");
     let (archive, _) = export(&home, &run, "run.tar");
     assert_eq!(import(&other, &archive).code, 0);
-    // Both go on, and otherwise.
+    // Both runs continue differently.
     for (home, price) in [(&home, "A=11"), (&other, "A=19")] {
         let lines = format!("set_prices {price}\nnext \"on\" naive\n");
         assert_eq!(home.play(&["--run", &id(&run)], &lines).code, 0);
@@ -142,7 +141,7 @@ fn another_record_of_a_run_is_told_apart_and_imported_under_a_name_of_its_own() 
     let path = text(&second);
     other.run(&["runs", "import", &path, "--under", "../out"]).fails(1, &["is not a valid run name"]);
     other.run(&["runs", "import", &path, "--under", &id(&run)]).fails(1, &["already exists in"]);
-    other.run(&["runs", "import", &path, &path, "--under", "second"]).fails(2, &["names one run"]);
+    other.run(&["runs", "import", &path, &path, "--under", "second"]).fails(2, &["exactly one archive"]);
     let imported = other.run(&["runs", "import", &path, "--under", "second"]);
     assert!(
         imported.code == 0 && imported.out.contains("as second imported"),
@@ -152,7 +151,7 @@ fn another_record_of_a_run_is_told_apart_and_imported_under_a_name_of_its_own() 
     );
     let beside = other.runs().join("second");
     assert_eq!(bytes_of(&beside, "trajectory.jsonl"), bytes_of(&run, "trajectory.jsonl"));
-    assert_eq!(bytes_of(&there, "trajectory.jsonl"), before, "the record that was there is as it was");
+    assert_eq!(bytes_of(&there, "trajectory.jsonl"), before, "the existing record is unchanged");
     assert_eq!(other.run(&["replay", "second", "--verify"]).code, 0);
     assert!(other.run(&["runs", "list"]).out.contains("second"));
 }
@@ -196,11 +195,11 @@ fn the_database_of_an_archive_opens_without_the_program() {
             && ask("SELECT 1.0 * count(*) FROM ads_revenue") > 0.0
     );
     let packed = "SELECT 1.0 * count(*) FROM sqlite_master WHERE name LIKE '%_blocks'";
-    assert_eq!(ask(packed), 0.0, "there is nothing only the program can read");
+    assert_eq!(ask(packed), 0.0, "there are no files that only the program can read");
     let typed = "SELECT 1.0 * count(*) FROM sqlite_master WHERE name = 'subscriptions' \
                  AND sql LIKE '%CAST(effective_price AS REAL) AS effective_price%'";
     assert_eq!(ask(typed), 1.0, "SQLite before 3.52 needs the type to sort whole rows");
-    // The SQLite of the machine's Python is often older than the one in the program.
+    // The SQLite of the machine's Python is often older than that of the program.
     let script = "import sqlite3, sys\n\
                   rows = sqlite3.connect(sys.argv[1]).execute('SELECT * FROM subscriptions ORDER BY status DESC')\n\
                   at = [column[0] for column in rows.description].index('effective_price')\n\
@@ -225,7 +224,7 @@ fn what_was_changed_is_refused_and_named() {
         assert!(folders(&other.runs()).is_empty());
     };
     forged(&bad, &files);
-    assert_eq!(import(&other, &bad).code, 0, "the files as they were are fine");
+    assert_eq!(import(&other, &bad).code, 0, "the unchanged files are valid");
     fs::remove_dir_all(other.runs().join(id(&run))).expect("it was there");
     for (at, (name, bytes)) in files.iter().enumerate().filter(|(_, (name, _))| !name.ends_with("seal.toml"))
     {
@@ -272,14 +271,14 @@ fn dangerous_and_foreign_files_are_refused() {
         builder.finish().expect("an archive");
         import(&home, &bad).fails(3, &["not a regular file"]);
     }
-    // What a damaged archive holds is told in one line that does not steer the terminal.
+    // The contents of a damaged archive are reported in one line without terminal control sequences.
     forged(&bad, &[("0123abcd/\u{1b}[2J\nrun.toml".to_owned(), b"x".to_vec())]);
     import(&home, &bad).fails(3, &["0123abcd/\\u{1b}[2J\\nrun.toml is not a file of a run"]);
     let mut torn = header("0123abcd/run.toml", 0, tar::EntryType::Regular);
     torn.as_old_mut().cksum = *b"FRO\nM\x1b[m";
     fs::write(&bad, torn.as_bytes()).expect("a header");
     import(&home, &bad).fails(3, &["not an archive of a run", "FRO\\nM\\u{1b}[m"]);
-    // A size that is only claimed: nothing is read and nothing is reserved.
+    // A false size: nothing is read and no memory is reserved.
     fs::write(&bad, header("0123abcd/run.toml", 7 << 30, tar::EntryType::Regular).as_bytes())
         .expect("a header");
     import(&home, &bad).fails(3, &["run.toml is too large"]);
@@ -365,12 +364,12 @@ fn all_runs_go_out_with_tables_that_agree_with_them() {
             assert_eq!(week[name], value.to_string(), "{name}");
         }
     }
-    // The codebook knows every column of every table.
+    // The codebook describes every column of every table.
     let columns = table(&out.join("columns.csv"));
     let all = ["forecasts", "queries", "events", "notes"]
         .map(|name| (name, table(&out.join(format!("{name}.csv")))));
-    assert_eq!(table(&out.join("answers.csv")).len(), 0, "nobody asked anything");
-    assert_eq!(all[2].1.len(), 2 * trajectory.lines().count(), "both runs were played alike");
+    assert_eq!(table(&out.join("answers.csv")).len(), 0, "there were no questions");
+    assert_eq!(all[2].1.len(), 2 * trajectory.lines().count(), "both runs had the same decisions");
     let others = all.iter().map(|(name, rows)| (*name, &rows[0]));
     for (name, first) in [("runs", &runs[0]), ("weeks", &weeks[0])].into_iter().chain(others) {
         let known: Vec<&str> =
@@ -383,12 +382,12 @@ fn all_runs_go_out_with_tables_that_agree_with_them() {
         let there = Home::new();
         assert_eq!(import(&there, &archive).code, 0);
     }
-    // Again, of one participant only; the archives may be there already.
+    // Again, for one participant only; the archives may exist.
     let one = home.run(&["runs", "export", "--all", "--participant", "P01", "--out", &text(&out)]);
     assert_eq!((one.code, table(&out.join("runs.csv")).len()), (0, 1));
     let list = home.run(&["runs", "list", "--participant", "P01"]);
     assert_eq!(list.out.lines().count(), 1, "{}", list.out);
-    // A damaged run is named and keeps nobody else's from going out.
+    // A damaged run is reported and does not prevent the export of the others.
     fs::write(first.join("trajectory.jsonl"), "nonsense\n").expect("damage");
     let said = home.run(&["runs", "export", "--all", "--out", &text(&out)]);
     said.fails(3, &["1 of 2 runs"]);
@@ -417,7 +416,7 @@ fn sessions_are_summed_up_and_runs_compared() {
     let names = [id(&first), id(&second)];
     let said = home.run(&["lab", "compare", &names[0], &names[1]]);
     for part in ["P01", "P02", "rule-based baseline", "cash on day 21", "day 0", "Claude Fable 5", "differ"] {
-        // Both runs are played alike, so nothing but their end differs.
+        // Both runs have the same decisions, so only their end differs.
         assert_eq!(said.out.contains(part), part != "differ", "{part}: {}", said.out);
     }
     let object = home.run(&["lab", "compare", &names[0], &names[1], "--json"]).out;
@@ -440,7 +439,11 @@ fn sessions_are_summed_up_and_runs_compared() {
 #[test]
 fn the_documents_say_what_the_program_says() {
     let said = Home::new().run(&["runs", "columns"]);
-    assert_eq!(said.out, include_str!("../../../assets/columns.md"), "write it anew: novamind runs columns");
+    assert_eq!(
+        said.out,
+        include_str!("../../../assets/columns.md"),
+        "write it again with: novamind runs columns"
+    );
     let page = include_str!("../../../docs/formats/trajectory.md");
     let examples: Vec<Value> = page
         .lines()

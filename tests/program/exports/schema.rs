@@ -1,4 +1,4 @@
-//! The JSON Schema of trajectories against the lines that runs really write, of every kind.
+//! The JSON Schema of trajectories, compared with lines of every kind from real runs.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -17,7 +17,7 @@ fn schema() -> Value {
     serde_json::from_str(include_str!("../../../assets/trajectory.schema.json")).expect("the schema is JSON")
 }
 
-/// A part of the schema, with references followed.
+/// Returns a part of the schema, with references resolved.
 fn resolve<'a>(root: &'a Value, part: &'a Value) -> &'a Value {
     match part.get("$ref").and_then(Value::as_str) {
         Some(reference) => {
@@ -28,7 +28,7 @@ fn resolve<'a>(root: &'a Value, part: &'a Value) -> &'a Value {
     }
 }
 
-/// What a value has against a part of the schema. Knows every keyword the schema uses and no others.
+/// Validates a value against a part of the schema. Supports exactly the keywords that the schema uses.
 fn problems(root: &Value, part: &Value, value: &Value, place: &str, found: &mut Vec<String>) {
     let rules = resolve(root, part).as_object().expect("a schema is an object");
     let mut wrong = |what: String| found.push(format!("{place}: {what}"));
@@ -110,7 +110,7 @@ fn has_type(value: &Value, name: &str) -> bool {
     }
 }
 
-/// The only patterns of the schema: so many hexadecimal digits.
+/// Checks the only patterns of the schema: a number of hexadecimal digits.
 fn is_hexadecimal(text: &str, pattern: &str) -> bool {
     let count = pattern.strip_prefix("^[0-9a-f]{").and_then(|rest| rest.strip_suffix("}$"));
     let count: usize =
@@ -118,14 +118,14 @@ fn is_hexadecimal(text: &str, pattern: &str) -> bool {
     text.len() == count && text.bytes().all(|digit| matches!(digit, b'0'..=b'9' | b'a'..=b'f'))
 }
 
-/// What speaks against a line: its own kind is asked, so that the answer names the field.
+/// Returns the problems of a line, checked against the schema of its kind so that they name the field.
 fn against(root: &Value, line: &Value) -> Vec<String> {
     let kind = line["kind"].as_str().unwrap_or_default();
     let Some(part) = root.pointer(&format!("/$defs/{kind}")) else { return vec![format!("no kind {kind}")] };
     let mut found = Vec::new();
     problems(root, part, line, kind, &mut found);
     if found.is_empty() {
-        // The whole schema must come to the same end.
+        // The complete schema must give the same result.
         problems(root, root, line, "line", &mut found);
     }
     found
@@ -136,7 +136,7 @@ fn kinds(root: &Value) -> BTreeSet<String> {
     references.map(|own| own["$ref"].as_str().expect("a reference").replace("#/$defs/", "")).collect()
 }
 
-/// Examples of a document: valid lines, one of each kind.
+/// Checks the examples of a document: valid lines, one of each kind.
 pub fn check_examples(examples: &[Value]) {
     let root = schema();
     for example in examples {
@@ -152,7 +152,7 @@ fn lines_of(folder: &Path) -> Vec<Value> {
     text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
 }
 
-/// Everything that a person does besides acting, as the examples of the schema show it.
+/// Records every activity of a user besides acting, as in the examples of the schema.
 fn note_every_activity(run: &mut Session) {
     use novamind::record::trajectory::record::*;
     let root = schema();
@@ -177,7 +177,7 @@ fn note_every_activity(run: &mut Session) {
     run.activity().note(Activity::Xray(of(example("xray"))));
 }
 
-/// Runs that use every kind of line there is a way to write.
+/// Returns lines of every kind.
 fn all_kinds_of_lines(runs: &Path) -> Vec<Value> {
     let new = NewRun {
         days: Some(35),
@@ -190,7 +190,7 @@ fn all_kinds_of_lines(runs: &Path) -> Vec<Value> {
     let mut run = Session::create(new, &Configuration::shipped()).expect("a run");
     run.call("set_prices", &json!({"A": 12, "B": 25, "C": 55}), Via::Form).expect("prices");
     run.call("set_prices", &json!({"A": 14}), Via::Palette).expect("a price");
-    run.undo(Via::Plain).expect("it is taken back");
+    run.undo(Via::Plain).expect("it is reverted");
     run.call("set_prices", &json!({"A": 0}), Via::Http).expect_err("no price");
     run.call("research_market", &json!({}), Via::Policy).expect("research");
     run.query("SELECT count(*) FROM ledger").expect("a count");
@@ -228,7 +228,7 @@ fn every_line_that_runs_write_is_as_the_schema_says() {
     let lines = all_kinds_of_lines(runs.path());
     for line in &lines {
         assert_eq!(against(&root, line), Vec::<String>::new());
-        // Fields may be added to the format, but not without being written down.
+        // New fields of the format must be documented.
         let kind = line["kind"].as_str().expect("a kind");
         let known =
             root.pointer(&format!("/$defs/{kind}/properties")).and_then(Value::as_object).expect("fields");

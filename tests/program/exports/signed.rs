@@ -1,4 +1,4 @@
-//! Archives that a lab signed: who signed is told, and what was changed since is refused.
+//! Archives signed by a lab: import reports the signer and rejects later changes.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use novamind::session::{LabKey, Seal};
 use super::{contents, forged, import, played, text};
 use crate::support::home::{Home, id};
 
-/// What becomes of each file of an archive; none leaves it out.
+/// Changes a file of an archive; `None` removes it.
 type Change<'a> = &'a dyn Fn(&str, Vec<u8>) -> Option<Vec<u8>>;
 
 #[test]
@@ -33,7 +33,7 @@ fn a_signature_tells_who_exported_and_refuses_what_was_changed_since() {
             whole.iter().filter_map(|(name, bytes)| Some((name.clone(), change(name, bytes.clone())?)));
         forged(&bad, &changed.collect::<Vec<_>>());
     };
-    // A seal that fits itself, but is not the one that was signed.
+    // A consistent seal that is not the signed one.
     files(&|name, bytes| {
         if !name.ends_with("seal.toml") {
             return Some(bytes);
@@ -53,11 +53,11 @@ fn a_signature_tells_who_exported_and_refuses_what_was_changed_since() {
         "{}",
         said.out
     );
-    // Without its signature it is a whole archive of nobody.
+    // Without its signature it is a complete unsigned archive.
     files(&|name, bytes| (!name.ends_with("seal.sig")).then_some(bytes));
     let said = import(&other, &bad);
     assert!(said.code == 0 && said.out.contains("not signed"), "{}{}", said.out, said.err);
-    // A key that is none is said before the run is simulated, and leaves nothing behind.
+    // An invalid key is reported before the run is simulated, and nothing is written.
     let nothing = home.0.path().join("nothing.tar");
     fs::write(&file, "no key").expect("written");
     let said = export(&nothing, &file);

@@ -1,4 +1,4 @@
-//! The tables of a study: texts in them are harmless, and an independent script gets the same figures.
+//! The tables of a study: their texts are harmless, and an independent script computes the same figures.
 
 use std::path::Path;
 use std::process::Command;
@@ -15,7 +15,7 @@ use super::{folders, played, table, text};
 use crate::support::home::{Home, id};
 use crate::support::python::recompute;
 
-/// A run of four weeks that ends, with much of what the measures count.
+/// Plays a run of four weeks to its end, with many of the events that the measures count.
 const FOUR_WEEKS: &str = "set_prices A=12 B=25 C=55
 set_usage_quotas A=60000 B=250000 C=1200000
 set_model_tiers B=2 C=4
@@ -37,7 +37,7 @@ memo =HYPERLINK(\"http://x\")
 next \"because\" naive
 ";
 
-/// What a spreadsheet or a terminal would obey.
+/// Texts that a spreadsheet or a terminal would interpret.
 const HOSTILE: &[&str] = &["=1+1", "+1+cmd", "-1+cmd", "@SUM(A1)", "\u{1b}[31mred", "\u{202e}evil", "\t=1"];
 
 fn export(home: &Home) -> std::path::PathBuf {
@@ -47,7 +47,7 @@ fn export(home: &Home) -> std::path::PathBuf {
     out
 }
 
-/// A run with lines of every kind that tells of a person, by somebody who comes and goes.
+/// Plays a run with lines of every kind about the player, who leaves and returns.
 fn watched(home: &Home) {
     let storage = Storage::Runs(home.runs());
     let new = NewRun {
@@ -132,7 +132,7 @@ fn watched(home: &Home) {
         drop(run);
         run = Session::open(&folder, Access::Write, true).expect("it opens");
     }
-    // Somebody looks at how it ended, and leaves.
+    // The player views the end and leaves.
     run.activity().take_up(console);
     wait();
     run.activity().note_view("cash", "overview", 11);
@@ -178,7 +178,7 @@ fn an_independent_script_computes_every_measure_alike() {
     }
     let Some((told, code)) = recompute(&out) else { return };
     assert!(code == Some(0) && told.contains("3 runs") && told.contains(" 0 differences"), "{told}");
-    // The comparison notices what is wrong.
+    // The comparison detects errors.
     let weeks = out.join("weeks.csv");
     let changed =
         std::fs::read_to_string(&weeks).expect("a table").replacen("set_prices=1", "set_prices=2", 1);
@@ -281,17 +281,17 @@ fn anonymous_tables_tell_nothing_of_who_took_part_and_can_be_linked_by_who_has_t
         let at = format!("{year}-");
         secrets.push(&at);
         for secret in secrets {
-            assert!(!given.contains(secret), "{name} tells {secret:?}");
+            assert!(!given.contains(secret), "{name} contains {secret:?}");
         }
         assert_eq!(given.lines().count() > 1, name != "answers" || given.contains("mood"), "{name}");
     }
-    // Rows stand in the order of the new labels; who is alone is told, and columns can be left out.
+    // Rows are ordered by the new labels, unique combinations are reported, and columns can be left out.
     for name in ["runs", "weeks", "events"] {
         let rows = table(&Path::new(&anonymous).join(format!("{name}.csv")));
         assert!(rows.iter().map(|row| &row["participant"]).is_sorted(), "{name}");
     }
     assert!(
-        said.out.contains("the smallest group of sessions with equal seed and condition has "),
+        said.out.contains("the smallest group of sessions with the same seed and condition has "),
         "{}",
         said.out
     );
@@ -305,7 +305,7 @@ fn anonymous_tables_tell_nothing_of_who_took_part_and_can_be_linked_by_who_has_t
     assert!(events.iter().filter(|row| row["kind"] == "start").all(|row| row["value"].is_empty()));
     anonymise(&place("none"), &["--without", "run"]).fails(2, &["run cannot be left out"]);
     anonymise(&place("none"), &["--without", "sead"]).fails(2, &["no table has a column sead"]);
-    // The same secret gives the same names; masked texts keep their lengths; nothing is written over.
+    // The same secret gives the same names, masked texts keep their lengths, and nothing is overwritten.
     anonymise(&anonymous, &[]).fails(1, &["already exists"]);
     let masked = place("masked");
     assert_eq!(anonymise(&masked, &["--mask"]).code, 0);

@@ -1,4 +1,4 @@
-//! The cases of a group: command lines with what they read and write.
+//! The cases of a group: command lines with their input and output files.
 
 use std::fs;
 
@@ -12,19 +12,19 @@ use super::root;
 pub struct Case {
     /// Name of the file of its expected output.
     pub name: String,
-    /// Arguments of the program, separated by blanks. `'…'` keeps blanks. `{NAME}` is the id of the recorded run
-    /// `format2-NAME`, `{home}` the folder in which the command runs.
+    /// Arguments of the program, separated by spaces. `'…'` keeps spaces. `{NAME}` is the id of the recorded run
+    /// `format2-NAME`, `{home}` the working directory.
     pub run: String,
     /// Standard input.
     #[serde(default)]
     pub input: String,
-    /// Whether each line of the input is sent once the line before it was answered: a server may answer out of turn.
+    /// Whether each input line is sent after the answer to the previous one, because a server may answer out of order.
     #[serde(default)]
     pub in_turn: bool,
-    /// Files and folders that it writes, from the folder in which it runs. Tar archives are listed with their members.
+    /// Files and folders that it writes, relative to the working directory. Tar archives are listed with their members.
     #[serde(default)]
     pub files: Vec<String>,
-    /// Keys whose values are different each time, in JSON and TOML.
+    /// Keys with values that differ each time, in JSON and TOML.
     #[serde(default)]
     pub mask: Vec<String>,
 }
@@ -35,7 +35,7 @@ struct Group {
 }
 
 impl Case {
-    /// Its arguments.
+    /// Returns the arguments.
     pub fn arguments(&self) -> Vec<String> {
         let quoted = self.run.split('\'').enumerate();
         let (mut arguments, mut open) = (Vec::new(), None::<String>);
@@ -58,7 +58,7 @@ impl Case {
     }
 }
 
-/// The cases of a group.
+/// Returns the cases of a group.
 pub fn cases(group: &str) -> Vec<Case> {
     let path = root().join("cases").join(format!("{group}.toml"));
     let text = fs::read_to_string(&path).expect("cases");
@@ -66,7 +66,7 @@ pub fn cases(group: &str) -> Vec<Case> {
     group.case
 }
 
-/// The names of all groups.
+/// Returns the names of all groups.
 pub fn groups() -> Vec<String> {
     let files = fs::read_dir(root().join("cases")).expect("a folder").flatten();
     files.map(|file| file.path().file_stem().expect("a name").to_string_lossy().into_owned()).collect()

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::case::{cases, groups};
 use crate::support::home::Home;
 
-/// Options that choose a form of output, or a file that is written.
+/// Options that choose a form of output or an output file.
 const FORMS: [&str; 10] = [
     "--json",
     "--csv",
@@ -19,7 +19,7 @@ const FORMS: [&str; 10] = [
     "--session",
 ];
 
-/// Commands and options without a case, and why.
+/// Commands and options without a case, with the reason.
 const EXCEPTIONS: [(&str, &str); 12] = [
     ("bench", "measures time"),
     ("bench --json", "measures time"),
@@ -35,7 +35,7 @@ const EXCEPTIONS: [(&str, &str); 12] = [
     ("lab golden", "plays 24 seeds at least; its text names no figure that others read"),
 ];
 
-/// What the help of a command lists.
+/// The commands and options in the help of a command.
 #[derive(Default)]
 struct Help {
     commands: Vec<String>,
@@ -54,11 +54,11 @@ impl Help {
             }
             let words: Vec<&str> = line.split_whitespace().collect();
             match (section, words.first()) {
-                // Names of commands are indented by two blanks, their descriptions by more.
+                // Names of commands are indented by two spaces, their descriptions by more.
                 ("Commands:", Some(name)) if line.starts_with("  ") && !line.starts_with("   ") => {
                     help.commands.push((*name).to_owned());
                 }
-                // Names of options are indented by six blanks, or by two if they have a letter, too.
+                // Names of options are indented by six spaces, or by two if they have a short form.
                 ("Options:", Some(name)) if line.starts_with("      --") => {
                     option = FORMS.contains(name).then(|| (*name).to_owned());
                     help.forms.extend(option.iter().map(|name| (name.clone(), Vec::new())));
@@ -85,7 +85,7 @@ impl Help {
     }
 }
 
-/// Every command without subcommands, and its forms with each of their values.
+/// Collects every command without subcommands, and its forms with each of their values.
 fn expected(home: &Home, path: &[&str], found: &mut BTreeSet<String>) {
     let said = home.run(&[path, &["--help"]].concat());
     assert_eq!(said.code, 0, "{path:?}: {}", said.err);
@@ -107,7 +107,7 @@ fn expected(home: &Home, path: &[&str], found: &mut BTreeSet<String>) {
     }
 }
 
-/// The command of a case, and its forms with their values.
+/// Collects the command of a case, and its forms with their values.
 fn covered(arguments: &[String], commands: &BTreeSet<String>, found: &mut BTreeSet<String>) {
     let mut name = String::new();
     for word in arguments.iter().take_while(|word| !word.starts_with('-')) {

@@ -12,7 +12,7 @@ use super::masks::Masks;
 use super::{root, stored};
 use crate::support::home::{Home, Said, said};
 
-/// A home with the recorded runs of format 2, the study and the classes that some of them belong to, and a damaged copy.
+/// A home with the recorded runs of format 2, their study and classes, and a damaged copy.
 pub struct FrozenHome {
     pub home: Home,
     /// Ids of the recorded runs by the name of their folder, without `format2-`.
@@ -49,12 +49,12 @@ impl FrozenHome {
         FrozenHome { home, ids, masks }
     }
 
-    /// The id of the recorded run `format2-NAME`.
+    /// Returns the id of the recorded run `format2-NAME`.
     pub fn id(&self, name: &str) -> &str {
         &self.ids[name]
     }
 
-    /// Everything that a case prints and writes, with masks for what differs from one test to the next.
+    /// Returns everything that a case prints and writes, with masks.
     pub fn output_of(&mut self, case: &Case) -> String {
         let place = self.home.0.path().to_owned();
         let fill = |argument: String| {
@@ -91,10 +91,10 @@ impl FrozenHome {
         output
     }
 
-    /// Appends what a file, a folder or an archive contains.
+    /// Appends the contents of a file, a folder or an archive.
     fn write_file(&mut self, path: &Path, output: &mut String) {
         if path.is_dir() {
-            // New runs have random ids: the order of the masked names is the same in every execution.
+            // New runs have random ids; the order of the masked names is the same in every execution.
             let mut inner = sorted(path);
             inner.sort_by_key(|path| self.masks.apply(&path.display().to_string()));
             for path in inner {
@@ -132,7 +132,7 @@ impl FrozenHome {
     }
 }
 
-/// What a program prints if each line is sent once the one before it was answered. Notifications have no answer.
+/// Returns the output of a program if each line is sent after the answer to the previous one. Notifications have no answer.
 fn in_turn(command: &mut Command, lines: &str) -> Said {
     let mut child = command.spawn().expect("the program starts");
     let mut input = child.stdin.take().expect("a pipe");
@@ -148,15 +148,15 @@ fn in_turn(command: &mut Command, lines: &str) -> Said {
     output.read_to_string(&mut out).expect("text");
     let ended = child.wait_with_output().expect("the program ends");
     let err = String::from_utf8(ended.stderr).expect("UTF-8");
-    Said { out, err, code: ended.status.code().expect("it ends by itself") }
+    Said { out, err, code: ended.status.code().expect("it ends on its own") }
 }
 
-/// A file that only the program reads and makes again: the database, the snapshot, the lock with the number of a process.
+/// Returns whether a file is derived and not for other programs: the database, the snapshot, the lock with a process id.
 fn is_derived(name: &str) -> bool {
     ["world.db", "snapshot.bin", "lock"].iter().any(|end| name.ends_with(end))
 }
 
-/// What is in a folder, sorted by name.
+/// Returns the contents of a folder, sorted by name.
 fn sorted(folder: &Path) -> Vec<PathBuf> {
     let mut paths: Vec<PathBuf> =
         fs::read_dir(folder).expect("a folder").flatten().map(|entry| entry.path()).collect();
@@ -175,7 +175,7 @@ fn damage(trajectory: &Path) {
     fs::write(trajectory, format!("{}1{}", &whole[..at], &whole[at..])).expect("written");
 }
 
-/// Copies a folder and lets the moments in its files pass through the masks.
+/// Copies a folder and excludes the times in its files from masking.
 fn copy(from: &Path, to: &Path, masks: &mut Masks) {
     fs::create_dir_all(to).expect("a folder");
     for path in sorted(from) {

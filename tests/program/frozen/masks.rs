@@ -1,17 +1,17 @@
-//! What differs from one test to the next, and what takes its place. Everything else is compared as it is.
+//! Masks for values that differ from one test to the next. Everything else is compared unchanged.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-/// Characters of a moment up to its second: `2026-11-27T13:30:46`.
+/// Length of a time up to its second: `2026-11-27T13:30:46`.
 const SECOND: usize = 19;
 
-/// Fields of new lines of `trajectory.jsonl`, `afterwards.jsonl` and `visits.jsonl` that depend on the machine or on the moment.
+/// Fields of new lines of `trajectory.jsonl`, `afterwards.jsonl` and `visits.jsonl` that depend on the machine or the time.
 const LINE_FIELDS: [&str; 10] =
     ["prev", "sum", "machine", "boot", "monotonic_ms", "for_ms", "read_ms", "took_ms", "stood_ms", "used_ms"];
 
-/// Replacements for the folder of the test, moments that no recorded run has, and ids of new runs and classes.
+/// Replacements for the folder of the test, times that no recorded run has, and ids of new runs and classes.
 #[derive(Default)]
 pub struct Masks {
     place: String,
@@ -28,17 +28,17 @@ impl Masks {
         Masks { place, ..Masks::default() }
     }
 
-    /// Does not mask the moments of a text.
+    /// Excludes the times of a text.
     pub fn keep_moments(&mut self, text: &str) {
         self.seconds.extend(moments(text).map(|(_, moment)| moment[..SECOND].to_owned()));
     }
 
-    /// Does not mask an id.
+    /// Excludes an id.
     pub fn keep_id(&mut self, id: &str) {
         self.ids.insert(id.to_owned());
     }
 
-    /// Masks the ids of the runs that are new below a folder, the oldest first.
+    /// Masks the ids of new runs below a folder, the oldest first.
     pub fn find_new_ids(&mut self, below: &Path) {
         let mut new = Vec::new();
         self.new_runs(below, &mut new);
@@ -48,7 +48,7 @@ impl Masks {
         }
     }
 
-    /// The runs below a folder that were not recorded: when each was created, and its id.
+    /// Collects the new runs below a folder: time of creation and id.
     fn new_runs(&self, below: &Path, found: &mut Vec<(String, String)>) {
         for folder in fs::read_dir(below).into_iter().flatten().flatten().map(|entry| entry.path()) {
             let id = folder.file_name().expect("a name").to_string_lossy().into_owned();
@@ -64,7 +64,7 @@ impl Masks {
         }
     }
 
-    /// Masks the ids of a class and of the runs that its hand-outs begin, if the file is there.
+    /// Masks the ids of a class and of the runs of its handouts, if the file exists.
     pub fn find_class(&mut self, file: &Path) {
         let Ok(text) = fs::read_to_string(file) else { return };
         let class: toml::Table = text.parse().expect("a class");
@@ -81,7 +81,7 @@ impl Masks {
         self.new_ids.entry(id.to_owned()).or_insert(next);
     }
 
-    /// A text with the masks.
+    /// Returns a text with the masks.
     pub fn apply(&self, text: &str) -> String {
         let text = text.replace(&self.place, "HOME");
         let text = self.new_ids.iter().fold(text, |text, (id, mask)| text.replace(id, mask));
@@ -89,7 +89,7 @@ impl Masks {
         let text = self.keys.iter().fold(text, |text, key| {
             without_value(without_value(text, &format!("\"{key}\":")), &format!("\n{key} = "))
         });
-        // Recorded lines keep every byte: only a line with a masked moment is new.
+        // Recorded lines keep every byte: only a line with a masked time is new.
         let lines = text.split_inclusive('\n');
         lines
             .map(|line| if line.contains("\"at\":\"NOW\"") { masked_line(line) } else { line.to_owned() })
@@ -108,13 +108,13 @@ impl Masks {
     }
 }
 
-/// The moments of a text, each with its place.
+/// Returns the times of a text, each with its position.
 fn moments(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let starts = text.match_indices('T').filter_map(|(at, _)| at.checked_sub("0000-00-00".len()));
     starts.filter_map(|at| Some((at, moment_at(text.get(at..)?)?)))
 }
 
-/// The moment in RFC 3339 with which a text begins.
+/// Returns the RFC 3339 time at the start of a text.
 fn moment_at(text: &str) -> Option<&str> {
     let bytes = text.as_bytes();
     let pattern = b"0000-00-00T00:00:00";
@@ -127,12 +127,12 @@ fn moment_at(text: &str) -> Option<&str> {
     text.get(..SECOND + more + usize::from(zone))
 }
 
-/// A new line of a record without the values of `LINE_FIELDS`.
+/// Returns a new line of a record without the values of `LINE_FIELDS`.
 fn masked_line(line: &str) -> String {
     LINE_FIELDS.iter().fold(line.to_owned(), |line, field| without_value(line, &format!("\"{field}\":")))
 }
 
-/// A text without the values that follow a key: plain values of JSON and TOML.
+/// Removes the values that follow a key: plain values of JSON and TOML.
 fn without_value(mut text: String, key: &str) -> String {
     let mut from = 0;
     while let Some(at) = text[from..].find(key).map(|at| from + at + key.len()) {

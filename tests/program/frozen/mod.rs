@@ -1,8 +1,8 @@
-//! Frozen output: what the program prints and writes for others to read, compared byte for byte.
+//! Frozen output: everything that the program prints and writes for other programs, compared byte for byte.
 //!
 //! A case is a command line in `tests/data/frozen/cases/GROUP.toml`. Its expected output is `tests/data/frozen/GROUP/NAME.txt`:
-//! standard output, then standard error, the exit code, and the files it wrote, where there are any.
-//! `NOVAMIND_WRITE_FROZEN=1 cargo test --test program frozen` writes the expected outputs again.
+//! standard output, then standard error, the exit code, and the files that it wrote.
+//! `NOVAMIND_WRITE_FROZEN=1 cargo test --test program frozen` writes the expected outputs.
 
 mod case;
 mod coverage;
@@ -69,14 +69,14 @@ fn compare(group: &str, name: &str, output: &str) -> Option<String> {
     }
 }
 
-/// Two lines from shortly before the place in which they differ.
+/// Returns both texts from shortly before their first difference.
 fn around<'a>(before: &'a str, now: &'a str) -> [String; 2] {
     let same = before.chars().zip(now.chars()).take_while(|(one, other)| one == other).count();
     let part = |line: &'a str| -> String { line.chars().skip(same.saturating_sub(60)).take(160).collect() };
     [part(before), part(now)]
 }
 
-/// A text, or its length and digest if it is long.
+/// Returns a text, or its length and digest if it is long.
 fn stored(text: String) -> String {
     match text.len() {
         0..=MAX_STORED_BYTES => text,

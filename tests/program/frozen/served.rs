@@ -1,4 +1,4 @@
-//! What a served run answers over HTTP.
+//! Responses of a served run over HTTP.
 
 use serde_json::{Value, json};
 

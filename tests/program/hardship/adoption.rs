@@ -1,4 +1,4 @@
-//! A branch that is adopted is whole, or it is not there: programs that are killed on the way, and disks that are full.
+//! An adopted branch is complete or absent: killed programs and full disks.
 
 use std::fs;
 use std::io::Write;
@@ -10,7 +10,7 @@ use serde_json::Value;
 use crate::support::company::opening;
 use crate::support::home::{Home, Said, bytes_of, id, said};
 
-/// A debug run of some weeks, each with so many more calls, left behind; its folder.
+/// Plays a debug run of some weeks with a number of calls each; returns its folder.
 fn company(home: &Home, weeks: usize, calls: usize) -> PathBuf {
     let mut lines: String = opening().iter().map(|(tool, args)| format!("{tool} {args}\n")).collect();
     lines += &("set_prices A=13\nset_prices A=12\n".repeat(calls / 2) + "next naive\n").repeat(weeks);
@@ -18,7 +18,7 @@ fn company(home: &Home, weeks: usize, calls: usize) -> PathBuf {
     home.only_run()
 }
 
-/// Folders below that of runs whose branch is not whole.
+/// Returns staging folders of incomplete branches.
 fn unnamed(home: &Home) -> Vec<PathBuf> {
     let entries = fs::read_dir(home.runs()).expect("a folder").flatten().map(|entry| entry.path());
     entries
@@ -41,7 +41,7 @@ fn a_program_that_is_killed_while_it_adopts_leaves_no_run() {
     let mut pipe = child.stdin.take().expect("a pipe");
     pipe.write_all(b"whatif adopt from 2: set_prices * 0.9\n").expect("written");
     let begun = Instant::now();
-    // The first weeks of the branch are on the disk, and it is not whole.
+    // The first weeks of the branch are on disk, and it is incomplete.
     let is_under_way = || {
         let trajectory = unnamed(&home).first().map(|folder| folder.join("trajectory.jsonl"));
         trajectory
@@ -55,7 +55,7 @@ fn a_program_that_is_killed_while_it_adopts_leaves_no_run() {
     child.kill().expect("killed");
     child.wait().expect("it ends");
     assert_eq!(unnamed(&home).len(), 1, "it was killed on the way");
-    assert_eq!(listed(&home).len(), 1, "what is not whole is no run");
+    assert_eq!(listed(&home).len(), 1, "an incomplete branch is not a run");
     let again = home.play(&["--run", &id(&run), "--json"], "whatif adopt from 2: set_prices * 0.9\nstatus\n");
     assert_eq!(again.code, 0, "{}", again.err);
     assert_eq!((unnamed(&home), listed(&home).len()), (Vec::new(), 2));
@@ -82,7 +82,7 @@ fn a_disk_without_room_for_a_branch_keeps_the_run_and_makes_none() {
         "{adopted}"
     );
     assert!(adopted["error"].as_str().is_some_and(|words| words.contains("there is no branch")), "{adopted}");
-    assert_eq!(answers.last().expect("an answer")["day"], 84, "the run goes on");
+    assert_eq!(answers.last().expect("an answer")["day"], 84, "the run continues");
     assert_eq!((unnamed(&home), listed(&home).len()), (Vec::new(), 1));
     assert_eq!(home.run(&["replay", &id(&run), "--verify"]).code, 0);
 }

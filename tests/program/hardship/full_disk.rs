@@ -1,4 +1,4 @@
-//! A disk that is full: what is not saved does not happen, and what happened is not lost.
+//! A full disk: what is not saved has no effect, and what was confirmed is not lost.
 
 use std::fs;
 use std::path::Path;
@@ -9,10 +9,10 @@ use crate::support::home::{Home, Said, bytes_of, id, lines_of, said};
 
 /// Blocks of 512 bytes a file may have.
 const BLOCKS: usize = 2048;
-/// A statement whose line of the trajectory is about this much longer than without.
+/// Bytes by which a statement lengthens its line of the trajectory.
 const PADDING: usize = 490_000;
 
-/// Plays on a disk on which no file grows beyond the limit.
+/// Plays on a disk on which no file exceeds the limit.
 fn play(home: &Home, options: &str, lines: &str) -> Said {
     let program = env!("CARGO_BIN_EXE_novamind");
     let script = format!("trap '' XFSZ; ulimit -f {BLOCKS}; exec '{program}' play --plain --json {options}");
@@ -53,7 +53,7 @@ fn what_was_not_saved_did_not_happen() {
     }));
     let last = objects.iter().rfind(|object| object["command"] == "set_prices" && object["ok"] == true);
     let accepted = last.expect("an accepted call")["data"]["current"]["A"].as_f64();
-    assert_eq!(price(&objects), accepted, "memory is what was confirmed");
+    assert_eq!(price(&objects), accepted, "memory has exactly what was confirmed");
     let next = objects.iter().find(|object| object["command"] == "next").expect("an answer");
     assert_eq!((next["code"].as_str(), next["day"].as_u64()), (Some("not_saved"), Some(0)));
 
@@ -61,14 +61,14 @@ fn what_was_not_saved_did_not_happen() {
     let again = home.play(&["--run", &id(&folder), "--json"], "changes\nset_prices A=5\nnext naive\n");
     assert_eq!(again.code, 0, "{}", again.err);
     let objects = again.objects();
-    assert_eq!(price(&objects), accepted, "the file is what was confirmed");
-    assert!(objects.iter().all(|object| object["ok"] != false), "there is room again: {}", again.out);
+    assert_eq!(price(&objects), accepted, "the file has exactly what was confirmed");
+    assert!(objects.iter().all(|object| object["ok"] != false), "there is space again: {}", again.out);
     assert_eq!(home.run(&["replay", &id(&folder), "--verify"]).code, 0);
 }
 
 #[test]
 fn a_week_whose_closing_line_did_not_fit_is_simulated_again() {
-    // How long the lines are.
+    // Lengths of the lines.
     let home = Home::new();
     let start = "set_prices A=12\n".to_owned() + &padding(PADDING);
     home.play(&["--days", "28"], &(start.clone() + "next naive\n"));
@@ -88,9 +88,9 @@ fn a_week_whose_closing_line_did_not_fit_is_simulated_again() {
         assert_eq!(said.code, 0, "{}", said.err);
         let objects = said.objects();
         let next = objects.iter().find(|object| object["command"] == "next").expect("an answer");
-        assert_eq!(next["ok"], accepted, "room for {room} bytes: {next}");
+        assert_eq!(next["ok"], accepted, "space for {room} bytes: {next}");
         let told = next["data"]["remark"].as_str().is_some_and(|text| text.contains("simulated again"));
-        assert_eq!(told, remark, "room for {room} bytes: {next}");
+        assert_eq!(told, remark, "space for {room} bytes: {next}");
         let status = objects.iter().find(|object| object["command"] == "status").expect("an answer");
         let folder = home.only_run();
         assert!(length(&folder) <= BLOCKS * 512);
@@ -98,7 +98,7 @@ fn a_week_whose_closing_line_did_not_fit_is_simulated_again() {
         let again = home.play(&["--run", &id(&folder), "--json"], "status\n");
         assert_eq!(again.code, 0, "{}", again.err);
         let objects = again.objects();
-        assert_eq!(objects[1]["data"], status["data"], "room for {room} bytes");
+        assert_eq!(objects[1]["data"], status["data"], "space for {room} bytes");
         assert_eq!(objects[0]["day"], if accepted { 7 } else { 0 });
         assert_eq!(home.run(&["replay", &id(&folder), "--verify"]).code, 0);
     }
@@ -116,7 +116,7 @@ fn an_archive_that_finds_no_room_is_not_blamed() {
     full.fails(3, &["trajectory.jsonl", "File too large"]);
     assert!(!full.err.contains("ask for the archive again"), "{}", full.err);
     assert_eq!(fs::read_dir(other.runs()).expect("a folder").count(), 0, "it leaves nothing behind");
-    assert_eq!(other.run(&["runs", "import", &archive]).code, 0, "there is room again");
+    assert_eq!(other.run(&["runs", "import", &archive]).code, 0, "there is space again");
 }
 
 #[test]
@@ -136,7 +136,7 @@ fn a_query_makes_a_missing_database_anew_on_the_disk_and_changes_nothing_else() 
         assert_eq!(bytes_of(&run, "trajectory.jsonl"), trajectory);
     }
     assert_eq!(ask().out, before);
-    // Where it finds no room it is made in memory.
+    // Without space it is built in memory.
     fs::remove_file(run.join("world.db")).expect("gone");
     let program = env!("CARGO_BIN_EXE_novamind");
     let sql = "SELECT count(*), sum(amount) FROM ledger";

@@ -1,4 +1,4 @@
-//! The file of a run is taken away while it is played: the game stops, and nothing that was confirmed is lost.
+//! The file of a run is removed while it is played: the game stops, and nothing that was confirmed is lost.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
@@ -41,7 +41,7 @@ fn a_trajectory_that_is_deleted_stops_the_game_and_can_be_put_back() {
         words.contains("your decisions are no longer on disk") && !words.contains("disk space"),
         "{words}"
     );
-    // It ends by itself, though more could be typed.
+    // It ends without waiting for more input.
     let end = next();
     assert_eq!((end["event"].as_str(), end["reason"].as_str()), (Some("end"), Some("record_lost")));
     assert_eq!(child.wait().expect("it ends").code(), Some(3));

@@ -1,7 +1,7 @@
-//! Bad input and bad luck against the built program: wrong files, damaged runs, a full disk, no terminal.
+//! Invalid input and failures against the built program: wrong files, damaged runs, a full disk, no terminal.
 //!
-//! Whatever happens, the message names the place and what can be done, the exit code is the promised one, and
-//! nothing that was confirmed is lost.
+//! In each case the message names the place and the next step, the exit code is as documented, and nothing that was confirmed is
+//! lost.
 
 #[cfg(unix)]
 mod adoption;
@@ -125,7 +125,7 @@ fn a_wrong_policy_names_file_line_and_what_is_allowed() {
     home.run(&["run", "--policy", "nothere", "--days", "28"]).fails(2, &["nothere", "baseline"]);
 }
 
-/// What is done to a trajectory of ten lines.
+/// A change of a trajectory of ten lines.
 type Damage = fn(&mut Vec<u8>);
 
 fn flip_after(bytes: &mut [u8], line: usize, word: &str) {
@@ -168,7 +168,7 @@ fn a_damaged_trajectory_is_refused_with_its_line_and_left_as_it_is() {
     home.play(&["--run", &id], "").fails(3, &["trajectory.jsonl"]);
     fs::write(folder.join("trajectory.jsonl"), &good).expect("written");
     let said = home.run(&["replay", &id, "--verify"]);
-    assert!(said.code == 0 && said.out.contains("2 states reached again"), "{}{}", said.out, said.err);
+    assert!(said.code == 0 && said.out.contains("2 states verified"), "{}{}", said.out, said.err);
 }
 
 #[test]
@@ -184,7 +184,7 @@ fn a_changed_figure_is_found_without_the_database() {
 
 #[test]
 fn a_torn_last_line_is_cut_off_and_the_run_goes_on() {
-    // Up to the line that closes the second week: what stands after it was written on leaving.
+    // Up to the line that ends the second week; later lines were written when the session closed.
     let played = || {
         let home = Home::new();
         let folder = home.two_weeks();
@@ -196,7 +196,7 @@ fn a_torn_last_line_is_cut_off_and_the_run_goes_on() {
         fs::write(folder.join("trajectory.jsonl"), &good[..good.len() - lost]).expect("written");
         let said = home.play(&["--run", &id], "set_prices A=13\n");
         assert_eq!(said.code, 0, "{}", said.err);
-        // The torn line closed a week that had been confirmed: it is simulated again.
+        // The torn line ended a confirmed week, which is simulated again.
         for part in [
             "day 14 of 28",
             "note: The last line of the trajectory was unfinished",
@@ -213,7 +213,7 @@ fn a_torn_last_line_is_cut_off_and_the_run_goes_on() {
     let said = home.play(&["--run", &id], "");
     assert!(said.code == 0 && said.out.contains("unfinished (100 bytes)"), "{}{}", said.out, said.err);
     let bytes = bytes_of(&folder, "trajectory.jsonl");
-    assert!(bytes.starts_with(&good) && lines_of(&bytes).len() == 11, "only coming and leaving were added");
+    assert!(bytes.starts_with(&good) && lines_of(&bytes).len() == 11, "only start and end lines were added");
 }
 
 #[test]
@@ -246,7 +246,7 @@ fn a_damaged_manifest_is_made_anew_and_the_trajectory_goes_on() {
         assert!(list.out.contains(&id) && !list.out.contains("cannot be read"), "{}", list.out);
         let said = home.play(&["--run", &id], "");
         assert!(said.code == 0 && said.out.contains(&part), "{part}: {}{}", said.out, said.err);
-        assert!(!home.play(&["--run", &id], "").out.contains("run.toml"), "it is told once");
+        assert!(!home.play(&["--run", &id], "").out.contains("run.toml"), "it is reported once");
     }
     fs::remove_file(folder.join("run.toml")).expect("gone");
     assert!(!home.run(&["runs"]).out.contains("cannot be read"));
@@ -280,7 +280,7 @@ fn what_stands_in_the_way_is_named() {
     let home = Home::new();
     let folder = home.two_weeks();
     let id = id(&folder);
-    // Root may write where others may not, so folders stand where files should be.
+    // Root can write anywhere, so folders take the place of files.
     for file in ["lock", "world.db", "trajectory.jsonl"] {
         let (path, aside) = (folder.join(file), folder.join("aside"));
         fs::rename(&path, &aside).expect("moved");
@@ -292,7 +292,7 @@ fn what_stands_in_the_way_is_named() {
     fs::create_dir(folder.join("memo.md")).expect("a folder");
     let said = home.play(&["--run", &id], "memo remember\nset_prices A=14\n");
     assert!(said.out.contains("refused not_") && said.out.contains("memo.md"), "{}", said.out);
-    assert!(said.out.contains("ok set_prices"), "the game goes on: {}", said.out);
+    assert!(said.out.contains("ok set_prices"), "the game continues: {}", said.out);
 
     let file = home.0.path().join("file");
     fs::write(&file, "in the way").expect("a file");
@@ -315,7 +315,7 @@ fn a_folder_that_cannot_be_written_is_named() {
     let folder = home.two_weeks();
     let allow = |mode| fs::set_permissions(&folder, fs::Permissions::from_mode(mode)).expect("changed");
     allow(0o555);
-    // Root may write anyway: then there is nothing to see here.
+    // Root can write anyway, so there is nothing to check.
     if fs::write(folder.join("probe"), "").is_err() {
         fs::set_permissions(folder.join("trajectory.jsonl"), fs::Permissions::from_mode(0o444))
             .expect("changed");
@@ -347,7 +347,7 @@ fn a_run_in_use_is_left_to_its_owner() {
     }
     let watched = home.play(&["--run", &id, "--watch"], "set_prices A=14\nquit\n");
     assert!(watched.out.contains("open read-only"), "{}", watched.out);
-    // Looking on is allowed, and the owner goes on undisturbed.
+    // Watching is allowed, and the player continues undisturbed.
     let seen = home.run(&["query", &id, "SELECT MAX(day) AS day FROM config_history"]);
     assert_eq!(seen.code, 0, "{}", seen.err);
     pipe.write_all(b"set_prices A=13\nquit\n").expect("written");
@@ -370,7 +370,7 @@ fn the_good_beginning_of_a_damaged_run_becomes_a_branch() {
     home.play(&["--run", &id(&folder)], "").fails(3, &["novamind runs rescue"]);
     let rescued = home.run(&["runs", "rescue", &id(&folder)]);
     assert_eq!(rescued.code, 0, "{}", rescued.err);
-    assert!(rescued.out.contains("stands at day 7"), "{}", rescued.out);
+    assert!(rescued.out.contains("is on day 7"), "{}", rescued.out);
     let own = rescued.out.split_whitespace().nth(1).expect("a name").to_owned();
     assert_eq!(home.run(&["replay", &own, "--verify"]).code, 0);
     assert_eq!(fs::read(&path).expect("a trajectory"), bytes, "the damaged run was changed");
@@ -425,7 +425,7 @@ fn options_before_a_command_are_refused_and_not_forgotten() {
     }
     assert_eq!(fs::read_dir(home.runs()).expect("a folder").count(), 0, "no other run was started");
     let runs = home.runs().to_string_lossy().into_owned();
-    assert_eq!(home.run(&["--runs-dir", &runs, "--as", "P01", "runs"]).code, 0, "these may stand there");
+    assert_eq!(home.run(&["--runs-dir", &runs, "--as", "P01", "runs"]).code, 0, "these may be there");
     assert_eq!(home.run(&["play", "--plain", "--mode", "lesson"]).code, 2, "there are no lessons yet");
 }
 

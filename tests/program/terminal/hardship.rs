@@ -1,4 +1,4 @@
-//! What happens to programs: small windows, signals, failures, terminals without colours.
+//! Small windows, signals, failures, terminals without colors.
 
 use super::pty::Terminal;
 
@@ -35,13 +35,13 @@ fn a_stopped_program_gives_the_terminal_back_and_takes_it_again() {
     for _ in 0..2 {
         terminal.signal("-TSTP");
         terminal.wait_until_stopped();
-        assert!(!terminal.is_raw(), "whoever has the terminal now can type");
+        assert!(!terminal.is_raw(), "the terminal accepts input again");
         terminal.wait_for_bytes(b"\x1b[?1049l");
         terminal.signal("-CONT");
         terminal.wait_for("Needs you");
         terminal.wait_until_raw();
     }
-    // Nobody is asked before this one; another program may leave the terminal as it likes.
+    // There is no prompt before this one; another program may leave the terminal in any state.
     terminal.signal("-STOP");
     terminal.wait_until_stopped();
     terminal.cook();
@@ -174,7 +174,7 @@ fn without_colour_no_colour_is_written() {
     assert_eq!(terminal.end().0, 0);
 }
 
-/// Parameters of the sequences that set how text looks: `38;5;6` of `ESC [ 38;5;6 m`.
+/// Returns the parameters of sequences that set the text style: `38;5;6` of `ESC [ 38;5;6 m`.
 fn sequences(written: &[u8]) -> Vec<String> {
     let text = String::from_utf8_lossy(written);
     let parts = text.split("\x1b[").skip(1);
@@ -185,7 +185,7 @@ fn sequences(written: &[u8]) -> Vec<String> {
     parts.filter_map(looks).collect()
 }
 
-/// 39 and 49 ask for the terminal's own colours; every other number from 30 to 49 or from 90 on is a colour.
+/// 39 and 49 select the default colors of the terminal; all other numbers from 30 to 49 and from 90 on are colors.
 fn sets_colour(parameters: &str) -> bool {
     parameters
         .split(';')

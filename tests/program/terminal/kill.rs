@@ -1,4 +1,4 @@
-//! The program is killed at random moments of console play: whatever the screen had confirmed is there.
+//! The program is killed at random moments in the console: everything that the screen had confirmed is saved.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -10,7 +10,7 @@ use super::pty::Terminal;
 use crate::support::dice::Dice;
 
 const KILLS: usize = 8;
-/// In `.ci/full`.
+/// Number of kills in `.ci/full`.
 const ALL_KILLS: usize = 100;
 
 fn only_run(runs: &Path) -> PathBuf {
@@ -18,14 +18,14 @@ fn only_run(runs: &Path) -> PathBuf {
     folders.into_iter().find(|folder| folder.join("run.toml").exists()).expect("a run")
 }
 
-/// Accepted calls and weeks that the trajectory has.
+/// Returns the numbers of accepted calls and weeks in the trajectory.
 fn recorded(runs: &Path) -> (usize, usize) {
     let lines = Trajectory::read(&only_run(runs).join("trajectory.jsonl")).expect("it reads").lines;
     let calls = lines.iter().filter(|line| line.record.accepted_call().is_some()).count();
     (calls, lines.iter().filter(|line| matches!(line.record, Record::Advance(_))).count())
 }
 
-/// Sets a price and says when the screen has confirmed it.
+/// Sets a price and waits for its confirmation.
 fn set_a_price(terminal: &mut Terminal, price: usize) {
     terminal.type_keys("8");
     terminal.wait_for("set_prices");
@@ -59,7 +59,7 @@ fn kills(count: usize) {
             terminal.type_keys("\r");
             weeks += 1;
         }
-        // Something is under way when it happens.
+        // An action is in progress when the program is killed.
         match *dice.pick(&["week", "call"]) {
             "week" => begin_a_week(&mut terminal),
             _ => terminal.type_keys("8\r\r17\r\x13"),

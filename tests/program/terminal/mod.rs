@@ -1,4 +1,4 @@
-//! The built program in a pseudo terminal: start, play, leave, come back; signals, small windows.
+//! The built program in a pseudo terminal: start, play, quit, resume; signals, small windows.
 
 mod hardship;
 mod kill;

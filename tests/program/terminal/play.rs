@@ -1,4 +1,4 @@
-//! A person plays: weeks, SQL, companies, the mouse, the clipboard.
+//! A user plays: weeks, SQL, enterprises, mouse, clipboard.
 
 use super::pty::{Terminal, run_of};
 
@@ -48,7 +48,7 @@ fn the_first_run_of_a_person_begins_with_the_tour() {
     terminal.wait_for("Tour · 3 of 18");
     terminal.type_keys("8\rj\r45\r\x13");
     terminal.wait_for("Tour · 4 of 18");
-    // F3 passes over a step.
+    // F3 skips a step.
     for step in 5..=8 {
         terminal.type_keys("\x1bOR");
         terminal.wait_for(&format!("Tour · {step} of 18"));
@@ -84,7 +84,7 @@ fn a_statement_is_completed_run_and_a_slow_one_cancelled() {
     terminal.type_keys("\x1b[15~");
     terminal.wait_for("Result · 1 row");
     terminal.wait_for("plans");
-    // Pasted text goes in as a whole, line ends included, and runs nothing.
+    // Pasted text is inserted completely, including line ends, and runs nothing.
     let slow = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n)\nSELECT count(*) FROM n";
     terminal.type_keys("\x0e");
     terminal.wait_until_gone("FROM research_projects");
@@ -123,7 +123,7 @@ fn the_mouse_presses_and_can_be_left_to_the_terminal() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &["--new"], (120, 40));
     terminal.wait_for("day 0/500");
-    // A click on the second line opens the screen whose name is there.
+    // A click on the second line opens the screen of that name.
     let tabs = terminal.contents().lines().nth(1).expect("a second line").to_owned();
     let column = tabs.find("8 Tools").expect("a tab") + 1;
     terminal.type_keys(&format!("\x1b[<0;{};2M\x1b[<0;{};2m", column + 2, column + 2));

@@ -1,4 +1,4 @@
-//! The built program in a pseudo terminal: its screen, its bytes, its end.
+//! The built program in a pseudo terminal: its screen, its output, its exit.
 
 use std::io::{Read, Write};
 use std::num::NonZeroU16;
@@ -19,17 +19,17 @@ pub struct Terminal {
     writer: Box<dyn Write + Send>,
     bytes: Receiver<Vec<u8>>,
     screen: vt100::Parser,
-    /// Everything it has written.
+    /// All output so far.
     written: Vec<u8>,
 }
 
 impl Terminal {
-    /// Starts the program with its runs in a folder.
+    /// Starts the program with a folder of runs.
     pub fn start(runs: &Path, arguments: &[&str], size: (u16, u16)) -> Terminal {
         Terminal::start_with(runs, arguments, size, &[])
     }
 
-    /// The same with variables of the environment.
+    /// Starts the program with environment variables.
     pub fn start_with(
         runs: &Path,
         arguments: &[&str],
@@ -38,7 +38,7 @@ impl Terminal {
     ) -> Terminal {
         let size = PtySize { rows, cols: columns, pixel_width: 0, pixel_height: 0 };
         let pair = native_pty_system().openpty(size).expect("a terminal");
-        // A file that may not grow is an error for the program, as a full disk is, and no signal.
+        // The file size limit must cause an error in the program, as a full disk does, instead of a signal.
         let mut command = CommandBuilder::new("sh");
         command.args(["-c", "trap '' XFSZ; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_novamind")]);
         command.args(arguments);
@@ -72,28 +72,28 @@ impl Terminal {
         }
     }
 
-    /// Forgets what was on the screen, as if another program had written over it.
+    /// Forgets the screen, as if another program had overwritten it.
     pub fn forget(&mut self) {
         self.screen.process(b"\x1b[2J");
     }
 
-    /// Types.
+    /// Types keys.
     pub fn type_keys(&mut self, keys: &str) {
         self.writer.write_all(keys.as_bytes()).expect("written");
         self.writer.flush().expect("flushed");
     }
 
-    /// Waits until the screen shows some text; fails with the whole screen.
+    /// Waits until the screen shows a text; fails with the screen.
     pub fn wait_for(&mut self, text: &str) {
         self.wait_until(text, |screen, _| screen.contains(text));
     }
 
-    /// Waits until some text has left the screen.
+    /// Waits until a text has left the screen.
     pub fn wait_until_gone(&mut self, text: &str) {
         self.wait_until(text, |screen, _| !screen.contains(text));
     }
 
-    /// Waits until the program has written some bytes, seen or not.
+    /// Waits until the program has written some bytes, visible or not.
     pub fn wait_for_bytes(&mut self, bytes: &[u8]) {
         let name = String::from_utf8_lossy(bytes).into_owned();
         self.wait_until(&name, |_, written| written.windows(bytes.len()).any(|window| window == bytes));
@@ -110,7 +110,7 @@ impl Terminal {
         }
     }
 
-    /// Waits until something outside the screen holds.
+    /// Waits until a condition outside the screen is true.
     pub fn wait_until_true(&mut self, what: &str, holds: impl Fn() -> bool) {
         let deadline = Instant::now() + Duration::from_secs(60);
         while !holds() {
@@ -122,12 +122,12 @@ impl Terminal {
         }
     }
 
-    /// Whether keys reach the program one by one, as the terminal itself says.
+    /// Returns whether the terminal is in raw mode.
     pub fn is_raw(&self) -> bool {
         !self.settings().split_whitespace().any(|word| word == "icanon")
     }
 
-    /// Waits until the program has the terminal.
+    /// Waits until the program has set raw mode.
     pub fn wait_until_raw(&mut self) {
         let path = self.path();
         let is_raw = || !settings_of(&path, &["-a"]).split_whitespace().any(|word| word == "icanon");
@@ -144,7 +144,7 @@ impl Terminal {
         self.wait_until_true("a stopped process", state);
     }
 
-    /// Makes the terminal gather lines, as a shell does.
+    /// Sets line mode, as a shell does.
     pub fn cook(&self) {
         settings_of(&self.path(), &["icanon", "echo"]);
     }
@@ -157,7 +157,7 @@ impl Terminal {
         self.master.tty_name().expect("a terminal has a name")
     }
 
-    /// A program that does not end is a failure with a screen, not a test that never ends.
+    /// Returns the exit code. A program that does not end fails with its screen instead of blocking the test.
     fn exit_code(&mut self) -> u32 {
         let deadline = Instant::now() + Duration::from_secs(60);
         loop {
@@ -180,22 +180,22 @@ impl Terminal {
         self.written.extend_from_slice(bytes);
     }
 
-    /// What is on the screen.
+    /// Returns the contents of the screen.
     pub fn contents(&self) -> String {
         self.screen.screen().contents()
     }
 
-    /// Everything the program has written.
+    /// Returns all output so far.
     pub fn written(&self) -> &[u8] {
         &self.written
     }
 
-    /// Number of the process.
+    /// Returns the process id.
     pub fn process(&self) -> String {
         self.child.process_id().expect("a process").to_string()
     }
 
-    /// Lets no file of the process grow beyond so many bytes, as a full disk does; `unlimited` makes room again.
+    /// Limits the size of files of the process, which acts as a full disk; `unlimited` removes the limit.
     #[cfg(target_os = "linux")]
     pub fn bound_files(&self, bytes: &str) {
         let arguments = ["--pid", &self.process(), &format!("--fsize={bytes}:")].map(str::to_owned);
@@ -204,7 +204,7 @@ impl Terminal {
         );
     }
 
-    /// Sends the process a signal, for instance `-TERM`.
+    /// Sends a signal to the process, for example `-TERM`.
     pub fn signal(&self, signal: &str) {
         let sent = std::process::Command::new("kill").args([signal, &self.process()]).status();
         assert!(sent.expect("kill runs").success());
@@ -217,12 +217,12 @@ impl Terminal {
         self.screen.screen_mut().set_size(cells(rows), cells(columns));
     }
 
-    /// Waits for the end of a process that was killed and could not tidy up.
+    /// Waits for the end of a process that was killed.
     pub fn killed(mut self) {
         self.exit_code();
     }
 
-    /// Waits for the end; returns the exit code and what is on the screen then.
+    /// Waits for the end; returns the exit code and the last screen.
     pub fn end(mut self) -> (u32, String) {
         let code = self.exit_code();
         while let Ok(bytes) = self.bytes.recv_timeout(Duration::from_secs(5)) {
@@ -239,7 +239,7 @@ fn settings_of(terminal: &Path, arguments: &[&str]) -> String {
     String::from_utf8(answer.expect("stty runs").stdout).expect("text")
 }
 
-/// Lets a policy play a run that is kept in a folder.
+/// Plays a policy and saves the run in a folder.
 pub fn run_of(runs: &Path, arguments: &[&str]) {
     let played = std::process::Command::new(env!("CARGO_BIN_EXE_novamind"))
         .arg("run")

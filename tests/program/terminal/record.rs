@@ -1,4 +1,4 @@
-//! How a session ends stands in its record, however it ends; and what was typed survives.
+//! Every end of a session is recorded, and typed text survives.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ fn only_run(runs: &Path) -> PathBuf {
     folders.into_iter().find(|folder| folder.join("run.toml").exists()).expect("a run")
 }
 
-/// What happened to the session, with the cause of its end.
+/// Returns the presence events of the session, with the cause of its end.
 fn presence(runs: &Path) -> Vec<(PresenceEvent, Option<LeavingCause>)> {
     let lines = Trajectory::read(&only_run(runs).join("trajectory.jsonl")).expect("it reads").lines;
     let of = |record: &Record| match record {
@@ -45,7 +45,7 @@ fn what_was_typed_survives_a_kill_of_the_console() {
     terminal.wait_for("we wait for leads");
     terminal.signal("-TERM");
     terminal.end();
-    assert!(drafts.exists(), "a signal leaves it for the next time");
+    assert!(drafts.exists(), "after a signal it stays for the next session");
 }
 
 #[test]

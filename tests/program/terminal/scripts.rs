@@ -1,4 +1,4 @@
-//! Scripts in the console: written in lines, stopped by a key, and no reason to wait when the program is left.
+//! Scripts in the console: typed in several lines, stopped by a key, and stopped when the program quits.
 
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -9,7 +9,7 @@ fn has_python() -> bool {
     Command::new("python3").args(["-c", ""]).output().is_ok_and(|done| done.status.success())
 }
 
-/// Opens the form of python_exec and pastes an endless script into it.
+/// Opens the form of python_exec and pastes an endless script.
 fn run_an_endless_script(terminal: &mut Terminal) {
     terminal.type_keys("8");
     terminal.wait_for("set_prices");
@@ -41,6 +41,6 @@ fn a_script_is_stopped_by_a_key_and_keeps_nobody_from_leaving() {
     terminal.wait_for("running the script");
     terminal.signal("-TERM");
     terminal.end();
-    // A script may take minutes; this bound is no measure of speed.
-    assert!(begun.elapsed() < Duration::from_secs(100), "nobody waits for a script that is given up");
+    // A script may take minutes; this limit does not measure speed.
+    assert!(begun.elapsed() < Duration::from_secs(100), "the program does not wait for a stopped script");
 }

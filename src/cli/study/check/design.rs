@@ -1,14 +1,14 @@
-//! What a protocol lays down that a session of its length cannot do.
+//! Design problems of a protocol: questions, forecasts and blocks that do not fit the length of a session.
 
 use super::{Outcome, Point};
 use crate::record::error::RunError;
 use crate::record::folder::configuration::Configuration;
 use novamind_study::{Moment, Study};
 
-/// The points of the design: questions, assignment, forecasts.
+/// Returns the points of the design: questions, assignment, forecasts.
 pub(super) fn points(study: &Study, configuration: &Configuration) -> Vec<Point> {
     let Ok((days, horizons)) = terms(study, configuration) else {
-        // The scenario is wrong, and the point of the world says so.
+        // An invalid scenario is reported by its own point.
         return Vec::new();
     };
     let mut points: Vec<Point> = questions(study, days.div_ceil(7)).into_iter().collect();
@@ -17,7 +17,7 @@ pub(super) fn points(study: &Study, configuration: &Configuration) -> Vec<Point>
     points
 }
 
-/// Last day of a session, and how many days ahead its forecasts look.
+/// Returns the last day of a session and the horizons of its forecasts in days.
 fn terms(study: &Study, configuration: &Configuration) -> Result<(u32, Vec<u32>), RunError> {
     let scenario = configuration.scenario(&study.protocol.world.scenario)?;
     let params = configuration.parameters(&scenario, &[], false)?;
@@ -25,14 +25,14 @@ fn terms(study: &Study, configuration: &Configuration) -> Result<(u32, Vec<u32>)
     Ok((study.protocol.world.days.unwrap_or(days), params.limits.prediction_horizons_days.clone()))
 }
 
-/// Questionnaires that are due after weeks which a session does not have.
+/// Reports questionnaires that are due after weeks that a session does not have.
 fn questions(study: &Study, weeks: u32) -> Option<Point> {
     let (mut never, mut words) = (false, Vec::new());
     for own in study.questionnaires.iter().filter(|own| own.when == Moment::Weeks) {
         let late: Vec<String> = own.weeks.iter().filter(|week| **week > weeks).map(u32::to_string).collect();
         if !late.is_empty() {
             never |= late.len() == own.weeks.len();
-            words.push(format!("questions/{}.toml asks after week {}", own.name, late.join(", ")));
+            words.push(format!("questions/{}.toml is due after week {}", own.name, late.join(", ")));
         }
     }
     if words.is_empty() {
@@ -42,7 +42,7 @@ fn questions(study: &Study, weeks: u32) -> Option<Point> {
     Some(Point::new("questions", if never { Outcome::Wrong(words) } else { Outcome::Note(words) }))
 }
 
-/// A last block of the assignment that does not hold every cell of the design.
+/// Reports a last block of the assignment that does not contain every cell of the design.
 fn last_block(study: &Study) -> Option<String> {
     let (places, cells) = (study.assignment.as_ref()?.places.len(), study.protocol.seeds.cells());
     (!study.protocol.seeds.block.is_empty() && !places.is_multiple_of(cells)).then(|| {
@@ -53,7 +53,7 @@ fn last_block(study: &Study) -> Option<String> {
     })
 }
 
-/// How many forecasts of a session come due within it, by horizon.
+/// Returns how many forecasts come due within a session, by horizon.
 fn forecasts(days: u32, horizons: &[u32]) -> Outcome {
     let due = |horizon: u32| days.checked_sub(horizon).map_or(0, |last| last / 7 + 1);
     let words: Vec<String> =

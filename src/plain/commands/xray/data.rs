@@ -1,4 +1,4 @@
-//! What the x-ray shows, as data.
+//! X-ray views as data.
 
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use novamind_insight::{CompanyDay, CompanyLens, CustomerDay, CustomerLens, LeadEquation, LeadFactor};
 use novamind_session::identifiers::{ByPlan, Plan};
 
-/// What holds for a plan, after its name.
+/// Values of a plan, with its name.
 #[derive(Serialize)]
 struct OfPlan<'a, T> {
     plan: Plan,

@@ -1,4 +1,4 @@
-//! The views of groups, of the market and of draws, as data.
+//! X-ray views of groups, of the market and of draws, as data.
 
 use serde_json::{Map, Value, json};
 

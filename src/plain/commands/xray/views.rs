@@ -19,10 +19,10 @@ use novamind_report::xray::{
 use novamind_session::identifiers::Group;
 use novamind_tools::Refusal;
 
-/// What a view answers, or why it cannot be asked.
+/// The answer of a view, a rejection, or a usage problem.
 type Viewed = Result<Result<Answer, Refusal>, Problem>;
 
-/// A view in words and as data.
+/// Returns a view as text and data.
 fn shown<T>(
     seen: Result<T, Refusal>,
     words: fn(&T) -> Vec<String>,
@@ -77,29 +77,29 @@ impl Interpreter {
     }
 }
 
-/// A group, and a day or none.
+/// Parses a group and an optional day.
 fn of_group(view: &str, arguments: &[Argument]) -> Result<(Group, Option<u32>), Problem> {
     group_and_day(view, &arguments.iter().collect::<Vec<_>>())
 }
 
-/// A day, or none.
+/// Parses an optional day.
 fn day_alone(view: &str, arguments: &[Argument]) -> Result<Option<u32>, Problem> {
     match arguments {
         [] => Ok(None),
         [day] => whole_number(day).map(Some),
         [_, second, ..] => {
-            let text = format!("name a day, or nothing for the last one: xray {view} 84");
+            let text = format!("give a day, or nothing for the last one: xray {view} 84");
             Err(Problem { text, column: second.column })
         }
     }
 }
 
-/// A part of the world, and how many draws.
+/// Parses a part of the world and an optional number of draws.
 fn part_and_count(arguments: &[Argument]) -> Result<(DrawnPart, Option<usize>), Problem> {
     let parts = DrawnPart::ALL.map(DrawnPart::id).join(", ");
     let usage = || Problem {
         text: format!(
-            "name a part, and a number of draws or none: xray streams service 4; parts are {parts}"
+            "give a part and optionally a number of draws: xray streams service 4; the parts are {parts}"
         ),
         column: arguments.get(2).map_or(1, |argument| argument.column),
     };
@@ -115,7 +115,7 @@ fn part_and_count(arguments: &[Argument]) -> Result<(DrawnPart, Option<usize>), 
             true => format!("the parts are {parts}"),
             false => format!("did you mean {}?", near.join(" or ")),
         };
-        Problem { text: format!("no draws of {id} can be told; {help}"), column: first.column }
+        Problem { text: format!("there are no draws of {id}; {help}"), column: first.column }
     })?;
     let count = count.map(whole_number).transpose()?;
     Ok((part, count.map(|count| count as usize)))

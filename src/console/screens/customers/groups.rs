@@ -1,4 +1,4 @@
-//! Every known group in a row.
+//! Table of all known groups.
 
 use ratatui::layout::Rect;
 
@@ -12,7 +12,6 @@ use novamind_tui::canvas::Canvas;
 use novamind_tui::text::count;
 use novamind_tui::widgets::Table;
 
-/// The table of the groups.
 pub struct CustomerGroupsPane;
 
 impl Pane<Customers> for CustomerGroupsPane {

@@ -1,4 +1,4 @@
-//! True values of groups in the table, where they are shown.
+//! True values of groups in the table, if the x-ray is open.
 
 use novamind_worker::company::Company;
 use novamind_base::notation::grouped;
@@ -7,31 +7,28 @@ use novamind_session::identifiers::Group;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Cell;
 
-/// A true value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TrueValue {
     /// Mean satisfaction of the subscribers.
     Satisfaction,
-    /// Reputation.
     Reputation,
-    /// Leads that were expected on the day.
+    /// Expected leads on the day.
     Leads,
-    /// What the market holds.
+    /// Market cap.
     Market,
 }
 
 impl TrueValue {
-    /// What it is of a group: `true satisfaction`.
+    /// Name in titles, such as `true satisfaction`.
     pub fn title(self) -> &'static str {
         match self {
             TrueValue::Satisfaction => "true satisfaction",
             TrueValue::Reputation => "true reputation",
-            TrueValue::Leads => "truly expected leads",
-            TrueValue::Market => "true size of the market",
+            TrueValue::Leads => "true expected leads",
+            TrueValue::Market => "true market cap",
         }
     }
 
-    /// The cell of a group.
     pub fn cell(self, group: Group, company: &Company) -> Cell {
         let value = company.hidden.as_ref().and_then(|hidden| self.of(&hidden.groups[group]));
         let cell = match value {

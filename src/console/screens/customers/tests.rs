@@ -184,7 +184,7 @@ fn every_pane_of_a_group_has_its_figures() {
     act(&mut screen, Action::Left, &company);
     assert_eq!(title(&screen), "leads of S1 in week 7");
     let text = drawn(&screen, &company, 200, 57);
-    for words in ["Fit of S1", "they want", "Study of S1", "lock-in aversion", "Retention, %", "Go to", "sources, 12 weeks", "week 7:"] {
+    for words in ["Fit of S1", "required", "Study of S1", "lock-in aversion", "Retention, %", "Go to", "sources, 12 weeks", "week 7:"] {
         assert!(text.contains(words), "{words} in\n{text}");
     }
 }

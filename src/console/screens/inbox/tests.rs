@@ -14,7 +14,7 @@ use novamind_tools::{Answer, DealResult, DealResults, ToolId};
 use novamind_tui::chord::Chord;
 use novamind_worker::request::Request;
 
-/// A company with waiting threads: every third is a subscriber with a price of its own.
+/// A company with waiting threads; every third enterprise is a subscriber with its own price.
 fn crowded_by(threads: u32) -> (Company, Rows, Rows) {
     let mut company = company();
     company.seen.day = 70;
@@ -82,7 +82,8 @@ fn crowded_screen_by(threads: u32) -> (Inbox, Company) {
     (screen, company)
 }
 
-/// Presses keys as the console does; a word in quotes is typed. Returns what the last key brought and their number.
+/// Presses keys as the console does; quoted words are typed. Returns the effects of the last key and the
+/// number of keys.
 fn press(screen: &mut Inbox, company: &Company, keys: &str) -> (Vec<Effect>, usize) {
     let known = Keys::shipped();
     let look = Look { company, keys: &known, page: 20 };
@@ -107,17 +108,17 @@ fn press(screen: &mut Inbox, company: &Company, keys: &str) -> (Vec<Effect>, usi
     (effects, count)
 }
 
-/// The deals of a call.
+/// Deals of a tool call.
 fn deals(effects: &[Effect]) -> Vec<Value> {
     match effects {
         [Effect::ConfirmCall { arguments, .. } | Effect::Request(Request::Call { arguments, .. })] => {
             arguments["deals"].as_array().expect("deals").clone()
         }
-        other => panic!("no call: {other:?}"),
+        other => panic!("no tool call: {other:?}"),
     }
 }
 
-/// The company and the screen after a call that was answered for all.
+/// The company and the screen after an answer to all deals.
 fn answered(screen: &mut Inbox, company: &mut Company, deals: &[Value]) {
     let customers: Vec<u32> = deals.iter().map(|deal| deal[0].as_u64().expect("a number") as u32).collect();
     company.seen.waiting.retain(|thread| !customers.contains(&thread.customer));
@@ -137,11 +138,11 @@ fn answered(screen: &mut Inbox, company: &mut Company, deals: &[Value]) {
 #[test]
 fn two_hundred_threads_are_worked_with_rules_in_under_forty_keys() {
     let (mut screen, mut company) = crowded_screen();
-    // Subscribers get what they ask, 3 % dearer; leads plan B at 90 % of the list, or C at 85 %.
+ // Offer subscribers 3 % more than they ask, and leads plan B at 90 % of the list price or C at 85 %.
     let (effects, mut keys) = press(&mut screen, &company, "/ 'reten' enter a t e '103' ctrl-s");
     let sent = deals(&effects);
     assert_eq!((sent.len(), &sent[0][1]), (66, &json!([["B", 20.6]])));
-    assert!(matches!(&effects[0], Effect::ConfirmCall { text, .. } if text.starts_with("66 companies, ")));
+    assert!(matches!(&effects[0], Effect::ConfirmCall { text, .. } if text.starts_with("66 enterprises, ")));
     answered(&mut screen, &mut company, &sent);
     keys += 1;
     assert_eq!(screen.marked.len(), 0);
@@ -163,27 +164,27 @@ fn rules_answer_every_thread_after_one_confirmation() {
     let rules = "'accept\u{a0}asked>=20;\u{a0}offer\u{a0}where\u{a0}group=E1:\u{a0}B\u{a0}85,C\u{a0}list*0.9;\u{a0}reject\u{a0}seats<60'";
     press(&mut screen, &company, &format!("R ctrl-n {rules}"));
     let text = drawn(&screen, &company, 120, 37);
-    for words in ["Rules", "accept asked>=20: 66 companies", "What 72 would get", "$20.00 → B $20.00"] {
+    for words in ["Rules", "accept asked>=20: 66 companies", "Preview for 72", "$20.00 → B $20.00"] {
         assert!(text.replace('\u{a0}', " ").contains(words), "{words} in\n{text}");
     }
     let (effects, _) = press(&mut screen, &company, "ctrl-s");
     let [Effect::ConfirmCalls { calls, text }] = &effects[..] else { panic!("{effects:?}") };
     let sizes: Vec<(ToolId, usize)> =
         calls.iter().map(|(tool, call)| (*tool, call["deals"].as_array().expect("deals").len())).collect();
-    // Leads of E1 are those whose number is a multiple of three: all of them have asked.
+    // Leads of E1 are those with a number divisible by three; all of them have asked.
     assert_eq!(sizes, [(ToolId::SendEnterpriseDeal, 66), (ToolId::RejectEnterpriseDeal, 6)]);
     assert!(text.contains("128 left as they are"), "{text}");
-    assert_eq!(screen.answers_of_before(&company).as_ref(), Some(&(calls.clone(), text.clone())), "they are kept");
+    assert_eq!(screen.answers_of_before(&company).as_ref(), Some(&(calls.clone(), text.clone())), "the rules are kept");
     press(&mut screen, &company, "esc R");
     for (width, height) in [(60, 13), (80, 21), (120, 37), (200, 57)] {
         let text = drawn(&screen, &company, width, height);
-        assert!(text.contains("seats<60"), "rules that were sent come back: {width}x{height} in\n{text}");
-        assert!(text.contains("$20.00 → B $20.00"), "what a company gets: {width}x{height} in\n{text}");
+        assert!(text.contains("seats<60"), "rules that were sent are shown again: {width}x{height} in\n{text}");
+        assert!(text.contains("$20.00 → B $20.00"), "offer to an enterprise: {width}x{height} in\n{text}");
     }
     press(&mut screen, &company, "tab");
-    assert_eq!((screen.focus, screen.scopes()[0].is_text()), (InboxPane::Thread, false), "tab leads to the preview");
+    assert_eq!((screen.focus, screen.scopes()[0].is_text()), (InboxPane::Thread, false), "tab focuses the preview");
     press(&mut screen, &company, "R");
-    assert_eq!((screen.focus, screen.scopes()[0].is_text()), (InboxPane::Offer, true), "R leads back to the rules");
+    assert_eq!((screen.focus, screen.scopes()[0].is_text()), (InboxPane::Offer, true), "R focuses the rules");
     let (effects, _) = press(&mut screen, &company, "ctrl-n 'ofer' ctrl-s");
     assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("did you mean offer")));
     sweep(&mut screen, &company);
@@ -218,7 +219,7 @@ fn a_draft_survives_and_belongs_to_its_thread() {
     assert_eq!(screen.offer().0[0].value, 95.0);
     assert!(screen.holds_unsent_text());
     press(&mut screen, &company, "e '7' esc");
-    assert_eq!(screen.offer().0[0].value, 95.0, "what was cancelled is forgotten");
+    assert_eq!(screen.offer().0[0].value, 95.0, "cancelled input is discarded");
     let (effects, _) = press(&mut screen, &company, "enter 'x'");
     assert!(matches!(&effects[..], [Effect::Complain(_)]) && screen.typing.is_some());
 }
@@ -242,7 +243,7 @@ fn pictures_hold_list_thread_offer_and_preview() {
     for (width, height) in [(80, 21), (120, 37), (200, 57)] {
         let text = drawn(&screen, &company, width, height);
         for words in
-            ["200 waiting for you", "left", "company", "no.", "new lead", "Your offer", "a seat"]
+            ["200 waiting for you", "left", "enterprise", "no.", "new lead", "Your offer", "per seat"]
         {
             assert!(text.contains(words), "{words} at {width}x{height} in\n{text}");
         }
@@ -250,7 +251,7 @@ fn pictures_hold_list_thread_offer_and_preview() {
     press(&mut screen, &company, "a");
     for (width, height) in [(80, 21), (120, 37), (200, 57)] {
         let text = drawn(&screen, &company, width, height);
-        for words in ["Bulk offer for 200", "What 200 would get", "200 marked", "→ B $32.00", "200 companies"]
+        for words in ["Bulk offer for 200", "Preview for 200", "200 marked", "→ B $32.00", "200 enterprises"]
         {
             assert!(text.contains(words), "{words} at {width}x{height} in\n{text}");
         }
@@ -259,7 +260,7 @@ fn pictures_hold_list_thread_offer_and_preview() {
     screen.focus_on(InboxPane::List);
     press(&mut screen, &company, "a / '1003' enter");
     let text = drawn(&screen, &company, 120, 37);
-    for words in ["#1003", "offered B $30.00", "At $20.00 for plan B", "formal", "they ask $20.00", "theirs"]
+    for words in ["#1003", "offered B $30.00", "At $20.00 for plan B", "formal", "asking price $20.00", "theirs"]
     {
         assert!(text.contains(words), "{words} in\n{text}");
     }
@@ -273,7 +274,7 @@ fn without_threads_it_says_what_brings_companies() {
     for width in [80, 120, 200] {
         let text = drawn(&screen, &company, width, 37);
         assert!(
-            text.contains("No company has asked for an offer yet") && text.contains("set_targeted_ad_spend"),
+            text.contains("No enterprise has asked for an offer yet") && text.contains("set_targeted_ad_spend"),
             "{text}"
         );
     }
@@ -307,7 +308,7 @@ fn a_real_company_is_answered_and_found_again() {
     assert_eq!(thread.offered(), [(Plan::B, 32.0)]);
     assert_eq!(thread.seats, first.seats);
     let again = act(&mut screen, Action::SendOffer, &after);
-    assert!(matches!(&again[..], [Effect::ConfirmCall { text, .. }] if text.contains("another turn")));
+    assert!(matches!(&again[..], [Effect::ConfirmCall { text, .. }] if text.contains("uses another turn")));
 }
 
 #[test]
@@ -340,7 +341,7 @@ fn an_offer_shows_what_it_earns_after_compute_and_where_the_figures_come_from() 
     assert_eq!(session.query(&turns).expect("rows").rows.len(), thread.turns.len());
 }
 
-/// A run whose leads were sent first offers of several plans and prices, some of them twice, over three weeks.
+/// A run whose leads got first offers with several plans and prices over three weeks, some of them twice.
 fn offered() -> novamind_session::Session {
     let mut session = courted();
     for week in 0..3 {
@@ -405,7 +406,7 @@ fn outcomes_of_first_offers_are_those_that_the_turns_and_subscriptions_tell() {
         assert_eq!(number(&row[7]), count("AND deal.yes IS NULL AND status <> 'lead'"), "{row:?}");
         assert_eq!(number(&row[8]), count("AND deal.yes IS NULL AND status = 'lead'"), "{row:?}");
         threads += all;
-        // The rows behind it are its threads.
+ // The query for the row returns its threads.
         OutcomesPane.table_mut(&mut screen).expect("a table").select(at);
         let sql = screen.figure(&look).and_then(|figure| figure.sql).expect("rows");
         let behind = session.query(&sql).expect("rows");
@@ -432,7 +433,7 @@ fn outcomes_stand_in_the_place_of_the_list_until_they_are_closed() {
     assert_eq!((screen.focus, Screen::depth(&screen)), (InboxPane::Outcomes, 1));
     screen.focus_on(InboxPane::Offer);
     press(&mut screen, &company, "esc");
-    assert_eq!(screen.focus, InboxPane::Outcomes, "the offer leads back to what it was looked at beside");
+    assert_eq!(screen.focus, InboxPane::Outcomes, "esc returns from the offer to the outcomes");
     for marks in ["space", "a"] {
         assert!(matches!(&press(&mut screen, &company, marks).0[..], [Effect::Complain(_)]));
     }
@@ -454,7 +455,7 @@ fn thousands_of_threads_are_marked_sent_and_followed_by_the_next_one() {
     press(&mut screen, &company, "a");
     assert_eq!(screen.marked.len(), 3_500);
     press(&mut screen, &company, "a");
-    // The first half is sent while its first thread is selected: the list goes on with the second half.
+    // The first half is sent while its first thread is selected; the list then shows the second half.
     let (effects, _) = press(&mut screen, &company, "R ctrl-n 'offer\u{a0}where\u{a0}customer<2750:\u{a0}B\u{a0}85' ctrl-s");
     let [Effect::ConfirmCalls { calls, .. }] = &effects[..] else { panic!("{effects:?}") };
     let sent = calls[0].1["deals"].as_array().expect("deals").clone();

@@ -1,4 +1,4 @@
-//! What rivals, drift and the economy really are, in lines above what is told of them, where that is shown.
+//! True values of competitors, drift and the economy, shown above the public figures if the x-ray is open.
 
 use ratatui::layout::Rect;
 
@@ -8,7 +8,7 @@ use novamind_tui::theme::Role;
 use novamind_base::notation::grouped;
 use novamind_insight::{HiddenValues, NextRivalMove};
 
-/// Rivals: what they could copy, and their next move.
+/// Lines on competitors: quality that they have not copied yet, and their next move.
 pub fn of_rivals(hidden: &HiddenValues) -> Vec<String> {
     let own: Vec<String> =
         hidden.own_banks.iter().map(|(group, bank)| format!("{group} {}", grouped(*bank, 4))).collect();
@@ -20,7 +20,7 @@ pub fn of_rivals(hidden: &HiddenValues) -> Vec<String> {
 }
 
 fn next_move(next: Option<&NextRivalMove>) -> String {
-    let Some(next) = next else { return "x-ray: rivals make no move before the end".to_owned() };
+    let Some(next) = next else { return "x-ray: competitors make no move before the end".to_owned() };
     match &next.made {
         Some(made) => {
             format!("x-ray: the next move, on day {}, added {} to expectations", next.day, grouped(made.boost, 4))
@@ -34,7 +34,7 @@ fn next_move(next: Option<&NextRivalMove>) -> String {
     }
 }
 
-/// The economy and drift.
+/// Lines on the economy and drift.
 pub fn of_economy(hidden: &HiddenValues) -> Vec<String> {
     let drift = match hidden.next_drift {
         Some(day) => format!("drift next on day {day}"),
@@ -48,7 +48,7 @@ pub fn of_economy(hidden: &HiddenValues) -> Vec<String> {
     )]
 }
 
-/// Draws such lines at the top of a place, as far as half of it; what is left below them.
+/// Draws the lines in at most the upper half of an area; returns the rest.
 pub fn draw_above(canvas: &mut Canvas<'_>, area: Rect, told: &[String]) -> Rect {
     let lines: Vec<String> =
         told.iter().flat_map(|line| wrapped(line, usize::from(area.width.max(1)))).collect();

@@ -1,4 +1,4 @@
-//! Cash by day, with the last forecasts as a fan.
+//! Cash by day with the last forecasts as a fan.
 
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
@@ -17,7 +17,6 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::note_room;
 use novamind_tui::widgets::{Axis, Line, Side, Unit, chart};
 
-/// The curve.
 pub struct CashCurvePane;
 
 impl Pane<Overview> for CashCurvePane {

@@ -154,7 +154,7 @@ fn no_word_of_a_need_is_cut_while_there_is_room() {
         let text = drawn(&screen, &company, width, height);
         let last = company.needs[0].text.split_whitespace().next_back().expect("a word");
         assert!(text.contains(last), "{last} in\n{text}");
-        for words in ["This week", "Needs you", "Cash", "individual leads", "→ Tools"] {
+        for words in ["This week", "Action needed", "Cash", "individual leads", "→ Tools"] {
             assert!(text.contains(words), "{words} in\n{text}");
         }
     }

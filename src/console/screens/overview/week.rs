@@ -1,4 +1,4 @@
-//! The figures of the week.
+//! Table of the figures of the week.
 
 use ratatui::layout::Rect;
 
@@ -12,7 +12,6 @@ use novamind_session::week_of;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
 
-/// The figures with their changes.
 pub struct WeekPane;
 
 impl Pane<Overview> for WeekPane {
@@ -58,7 +57,7 @@ impl Pane<Overview> for WeekPane {
     }
 }
 
-/// The screen that shows more of a figure, by its term.
+/// The screen with details of a figure, by its term.
 fn screen_of(term: &str) -> ScreenId {
     match term {
         "cash" | "payments" | "running-costs" => ScreenId::Cash,

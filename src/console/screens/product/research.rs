@@ -1,4 +1,4 @@
-//! R&D: a time line of the projects, what can be started, and what development and support have cost.
+//! R&D: timeline of projects, available projects, and spend on development and operations.
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
@@ -17,12 +17,10 @@ use novamind_tui::widgets::spark;
 use novamind_tui::widgets::table::first_row;
 use novamind_worker::company::Company;
 
-/// Weekly spend on development and operations.
+/// Weekly spend on development and operations, in dollars.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Spent {
-    /// Development by week.
     pub development: Vec<f64>,
-    /// Operations by week.
     pub operations: Vec<f64>,
 }
 
@@ -44,7 +42,7 @@ fn summary(projects: &[Project], last_day: u32) -> String {
     }
 }
 
-/// The projects, and what can be started.
+/// Running and available projects.
 pub struct Research;
 
 impl ProductPart for Research {
@@ -62,7 +60,7 @@ impl ProductPart for Research {
 
     fn note(&self, product: &Product, company: &Company, width: usize) -> String {
         match product.focus == self.name() {
-            true => format!("{} to spend", dollars(company.seen.cash)),
+            true => format!("{} cash", dollars(company.seen.cash)),
             false => self.summary(product, company, width),
         }
     }
@@ -111,7 +109,7 @@ fn draw_spent(canvas: &mut Canvas<'_>, area: Rect, spent: &Spent) {
     }
 }
 
-/// The projects as bars over the days from the first start to the last end.
+/// Projects as bars over the days from the first start to the last end.
 fn draw_line(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &Company) {
     let (area, projects) = (seat.area, &product.projects);
     let selected =
@@ -121,7 +119,7 @@ fn draw_line(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &C
     let skipped = first_row(selected.unwrap_or(0), rows, projects.len());
     let shown = &projects[skipped..projects.len().min(skipped + rows)];
     if shown.is_empty() {
-        canvas.text(area, "no projects yet: start_research_project starts one", Role::Dim);
+        canvas.text(area, "No projects yet. Start one with start_research_project.", Role::Dim);
         return;
     }
     let first = shown.iter().map(|project| project.started).min().unwrap_or(0).min(today);
@@ -139,7 +137,7 @@ fn draw_line(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &C
         canvas.text(Rect { x, width, ..area }, &format!("day {first}"), Role::Dim);
         let words = format!("day {last}");
         canvas.aligned(Rect { x, width, ..area }, &words, Role::Dim, Align::Right);
-        // Only where it stands clear of both ends.
+        // The mark is drawn only if both end labels leave room.
         let now = place(today);
         if now > 10 && now + 14 < width {
             canvas.text(Rect { x: x + now, width: 5, ..area }, "▼ now", Role::Key);
@@ -213,9 +211,9 @@ fn draw_offers(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: 
             remarks.push(format!("{} done", offer.counts.1));
         }
         if !affordable {
-            remarks.push("! more than your cash".to_owned());
+            remarks.push("! exceeds your cash".to_owned());
         }
-        // Where words do not fit, a sign says that it costs more than there is.
+        // In narrow rows a sign marks projects that cost more than the cash.
         let remarks = match row.width < 70 {
             true if !affordable => "!".to_owned(),
             true => String::new(),

@@ -106,7 +106,7 @@ fn the_small_window_has_a_line_on_everything() {
     }
 }
 
-/// Rows that an answer of the database holds at most.
+/// Maximum rows of a query result.
 const MOST: f64 = 5000.0;
 
 #[test]

@@ -60,7 +60,7 @@ impl Pane<Cash> for ForecastsPane {
     fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
         let (outlook, inside) = (&cash.outlook, seat.area);
         if outlook.all.is_empty() {
-            let text = format!("No forecasts yet. Each week needs four (press {}).", look.hint(Action::NextWeek));
+            let text = format!("No forecasts yet. You file four before each week ({}).", look.hint(Action::NextWeek));
             canvas.text(inside, &text, Role::Dim);
             return;
         }

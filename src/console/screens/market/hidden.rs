@@ -12,9 +12,9 @@ use novamind_insight::{HiddenValues, NextRivalMove};
 pub fn of_rivals(hidden: &HiddenValues) -> Vec<String> {
     let own: Vec<String> =
         hidden.own_banks.iter().map(|(group, bank)| format!("{group} {}", grouped(*bank, 4))).collect();
-    let own = if own.is_empty() { String::new() } else { format!(", of groups {}", own.join(", ")) };
+    let own = if own.is_empty() { String::new() } else { format!(", by group {}", own.join(", ")) };
     vec![
-        format!("x-ray, day {}: not copied {}{own}", hidden.day, grouped(hidden.shared_bank, 4)),
+        format!("x-ray, day {}: uncopied quality {}{own}", hidden.day, grouped(hidden.shared_bank, 4)),
         next_move(hidden.next_move.as_ref()),
     ]
 }
@@ -23,10 +23,10 @@ fn next_move(next: Option<&NextRivalMove>) -> String {
     let Some(next) = next else { return "x-ray: competitors make no move before the end".to_owned() };
     match &next.made {
         Some(made) => {
-            format!("x-ray: the next move, on day {}, added {} to expectations", next.day, grouped(made.boost, 4))
+            format!("x-ray: the next move, on day {}, raised expectations by {}", next.day, grouped(made.boost, 4))
         }
         None => format!(
-            "x-ray: next move on day {}: {}, or {} of what is not copied if that is more",
+            "x-ray: next move on day {}: {}, or {} of the uncopied quality if that is more",
             next.day,
             grouped(next.sampled, 4),
             novamind_base::notation::percent(next.u, 0)
@@ -37,11 +37,11 @@ fn next_move(next: Option<&NextRivalMove>) -> String {
 /// Lines on the economy and drift.
 pub fn of_economy(hidden: &HiddenValues) -> Vec<String> {
     let drift = match hidden.next_drift {
-        Some(day) => format!("drift next on day {day}"),
+        Some(day) => format!("next drift on day {day}"),
         None => "no drift before the end".to_owned(),
     };
     vec![format!(
-        "x-ray, day {}: PMI {}; everyone expects {} more than on day 0; {drift}",
+        "x-ray, day {}: PMI {}; expectations are {} higher than on day 0; {drift}",
         hidden.day,
         grouped(hidden.pmi, 2),
         grouped(hidden.everyone, 4)

@@ -60,11 +60,11 @@ const ESTIMATES: [Estimate; 8] = [
 ];
 
 /// Other screens show a range for it, too.
-const USAGE: &str = "usage demand";
+const USAGE: &str = "usage";
 
 /// Other screens show a range and a true value for these, too.
 const BUDGET: &str = "budget";
-const MARKET: &str = "market";
+const MARKET: &str = "market cap";
 
 /// The true value on the shown day, if the x-ray is open.
 fn truth_of(words: &str, group: Group, company: &Company) -> Option<String> {

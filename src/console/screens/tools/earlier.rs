@@ -1,4 +1,4 @@
-//! How a tool was used before in this run.
+//! Earlier calls of a tool in this run.
 
 use serde_json::Value;
 
@@ -8,10 +8,10 @@ use novamind_report::deals::deals_in_words;
 use novamind_session::JournalEntry;
 use novamind_tools::ToolId;
 
-/// Calls that are told below a form.
+/// Maximum number of calls shown below a form.
 pub const MOST: usize = 10;
 
-/// Calls of a tool, the newest first: decision day and arguments. Calls that repeat the one before are left out.
+/// Calls of a tool, newest first: decision day and arguments, without consecutive duplicates.
 pub fn calls(tool: ToolId, company: &Company, most: usize) -> Vec<(u32, String)> {
     let calls = company.journal.iter().rev().filter_map(|entry| match entry {
         JournalEntry::Call { day, tool: own, args, .. } if *own == tool => Some((*day, args)),

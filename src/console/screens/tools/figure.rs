@@ -1,4 +1,4 @@
-//! What is selected among the tools: a tool, or a value of its form with the rows of its history.
+//! The selected tool, or the selected value of its form with a query for its history.
 
 use std::sync::LazyLock;
 
@@ -20,12 +20,11 @@ fn term_of(tool: ToolId, argument: &str) -> Option<&'static str> {
         .find(|name| name.split_once('.').is_some_and(|(own, rest)| own == tool.name() && rest == argument))
 }
 
-/// A tool as a whole.
 pub(super) fn of_tool(spec: &'static Spec) -> Figure {
     Figure { title: spec.summary.to_owned(), term: spec.name(), sql: None, why: None }
 }
 
-/// The value that is selected in a form.
+/// The selected value of a form.
 pub(super) fn of_cell(form: &Form) -> Option<Figure> {
     let block = form.sheet.blocks.get(form.at.block)?;
     form.sheet.slot(form.at)?;
@@ -36,7 +35,7 @@ pub(super) fn of_cell(form: &Form) -> Option<Figure> {
         sql: history(form), why: None })
 }
 
-/// How the value was set over time, or what came of it.
+/// Query for the value over time, or for its effect.
 fn history(form: &Form) -> Option<String> {
     let block = form.sheet.blocks.get(form.at.block)?;
     let name = block.argument.name;

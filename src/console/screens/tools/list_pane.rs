@@ -1,4 +1,4 @@
-//! The list of all tools.
+//! List of all tools.
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
@@ -14,7 +14,7 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;
 use novamind_tui::widgets::table::first_row;
 
-/// The tools by module.
+/// Tools by module.
 pub struct ToolListPane;
 
 impl Pane<Tools> for ToolListPane {
@@ -102,7 +102,7 @@ impl Pane<Tools> for ToolListPane {
     fn draw(&self, tools: &Tools, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
         let lines = lines_of(tools);
         if lines.is_empty() {
-            let text = format!("no matching tool: {}", look.hint(Action::Close));
+            let text = format!("No matching tool: {}", look.hint(Action::Close));
             canvas.text(seat.area, &text, Role::Dim);
         }
         let field = u16::from(tools.typing.is_some());
@@ -132,7 +132,7 @@ impl Pane<Tools> for ToolListPane {
     }
 }
 
-/// A line of the list: the head of a module, or a tool with its place.
+/// A line of the list: the heading of a module, or a tool with its index.
 enum ListLine {
     Module(Module),
     Tool(usize, &'static Spec),
@@ -152,7 +152,7 @@ fn lines_of(tools: &Tools) -> Vec<ListLine> {
     lines
 }
 
-/// Draws a tool, and whether the lesson has it; one that is selected says whether the list has the focus.
+/// Draws a tool, marked if the lesson locks it; the selected one shows whether the list has the focus.
 fn draw_tool(
     tools: &Tools,
     canvas: &mut Canvas<'_>,

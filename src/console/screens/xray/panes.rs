@@ -1,4 +1,4 @@
-//! The panes of the X-ray: the views, what is chosen in one, and what was seen.
+//! Panes of the x-ray: views, choices and results.
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
@@ -17,13 +17,11 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::Table;
 use novamind_worker::look_inside::LookQuestion;
 
-/// What can be looked at.
 pub struct ViewsPane;
 
-/// The groups, the parts or the breakpoints of the view.
+/// Groups, components or breakpoints of the view.
 pub struct ChoicesPane;
 
-/// What was seen.
 pub struct SeenPane;
 
 fn scopes_of_list(table: Option<&Table>) -> Vec<Scope> {
@@ -248,7 +246,7 @@ impl Pane<Xray> for SeenPane {
             _ => String::new(),
         };
         let note = match (xray.asked.is_waiting(), view.has_day()) {
-            (true, _) => "simulating days again …".to_owned(),
+            (true, _) => "re-simulating …".to_owned(),
             (false, true) => format!("day {} of {}", xray.day_seen(), xray.last_day),
             (false, false) => format!("after day {}", xray.last_day),
         };

@@ -1,4 +1,4 @@
-//! Classes in the start menu: a hand-out is opened by its path, and what came back of a class is a screen.
+//! Classes in the start menu: a handout is opened by its path, and the results of a class are a screen.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -58,7 +58,7 @@ fn a_hand_out_is_opened_from_the_start_menu_and_gone_on_with() {
     let (folder, runs) = (place.path().join("class"), place.path().join("runs"));
     class(&folder, 2);
     let mut console = Console::start(&runs, SMALL);
-    choose(&mut console, "Hand-out");
+    choose(&mut console, "Handout");
     console.shows("File of the hand-out");
     console.press("enter");
     console.shows("type a path");
@@ -66,7 +66,7 @@ fn a_hand_out_is_opened_from_the_start_menu_and_gone_on_with() {
     console.shows("nothing.nm");
     assert!(console.app.run().is_none());
     console.press("esc");
-    choose(&mut console, "Hand-out");
+    choose(&mut console, "Handout");
     let path = folder.join("S01.nm").display().to_string();
     enter(&mut console, &path);
     console.shows("Three weeks");
@@ -76,12 +76,12 @@ fn a_hand_out_is_opened_from_the_start_menu_and_gone_on_with() {
     // The menu shows the student's runs, and the same file goes on.
     console.press("esc ; q");
     console.shows("1 on this machine");
-    choose(&mut console, "Hand-out");
+    choose(&mut console, "Handout");
     enter(&mut console, &path);
     assert_eq!(own(&console), first);
     // Another student sits down at the same machine.
     console.press("esc ; q");
-    choose(&mut console, "Hand-out");
+    choose(&mut console, "Handout");
     enter(&mut console, &folder.join("S02.nm").display().to_string());
     assert!(own(&console).starts_with(runs.join("participants/S02")));
     console.press("esc q");
@@ -95,7 +95,7 @@ fn the_hand_out_of_somebody_else_is_refused_where_the_runs_are_one_persons() {
     let (folder, runs) = (place.path().join("class"), place.path().join("runs/participants/S02"));
     class(&folder, 2);
     let mut console = Console::start(&runs, SMALL);
-    choose(&mut console, "Hand-out");
+    choose(&mut console, "Handout");
     enter(&mut console, &folder.join("S01.nm").display().to_string());
     console.shows("this is the hand-out of S01, not of S02");
     assert!(console.app.run().is_none() && !runs.with_file_name("S01").exists());

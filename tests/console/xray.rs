@@ -41,13 +41,13 @@ fn every_view_in_windows_of_four_sizes() {
         ("quality", "esc down"),
         ("satisfaction", "down"),
         ("reputation", "down"),
-        ("spill-over", "down"),
-        ("rivals", "down"),
+        ("spillover", "down"),
+        ("competitors", "down"),
         ("drift", "down"),
         ("streams", "down e 'service' enter esc"),
         ("customer", "down enter '3' enter enter '1200' enter"),
         ("breakpoints", "esc down enter enter 'churn(S1)>1%' enter e 'event' _ 'rival' enter"),
-        ("words", "a 'who' _ 'cash' _ '42' enter"),
+        ("commands", "a 'who' _ 'cash' _ '42' enter"),
     ];
     for (view, keys) in views {
         console.press(keys);
@@ -129,7 +129,7 @@ fn a_held_factor_shows_the_expected_leads_beside() {
     console.press("enter = enter");
     console.shows("with R 1: λ");
     console.press("down = '-1' enter");
-    console.shows("D is held at a number of at least 0");
+    console.shows("D needs a number of at least 0");
     console.press("esc = '0.5' enter");
     console.shows("with R 1, D 0.5: λ");
     console.press("= up =");
@@ -142,7 +142,7 @@ fn a_debug_run_runs_to_a_breakpoint_that_is_set_on_the_screen() {
     drop(run(runs.path(), Mode::Debug, 2));
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
     console.press("; k");
-    console.shows("no breakpoint is set");
+    console.shows("No breakpoint is set");
     console.press("e 'leads(S1)>1' enter e 'nonsense' enter");
     console.shows("nonsense");
     console.press("esc e 'cash<0' enter");

@@ -152,7 +152,7 @@ impl Outlook {
             Some(score) if !company.shows_calibration() => vec![format!("{} came due", score.scored)],
             Some(score) => {
                 let (inside, miss) =
-                    (format!("{} of {} in range", score.covered, score.scored), percent(score.mean_error, 1));
+                    (format!("{} of {} inside", score.covered, score.scored), percent(score.mean_error, 1));
                 vec![format!("{inside} · mean error {miss}"), format!("{inside} · error {miss}"), inside]
             }
             None => vec!["none due yet".to_owned()],
@@ -195,7 +195,7 @@ fn row_of(filed: &ScoredForecast) -> Vec<Cell> {
         _ => (Cell::words("–").role(Role::Dim), Cell::words("–").role(Role::Dim)),
     };
     let verdict = match filed.verdict() {
-        Some(Verdict::Inside) => Cell::words("in range").role(Role::Good),
+        Some(Verdict::Inside) => Cell::words("inside").role(Role::Good),
         Some(Verdict::Above) => Cell::words("▲ above").role(Role::Bad),
         Some(Verdict::Below) => Cell::words("▼ below").role(Role::Bad),
         None => Cell::words("open").role(Role::Dim),

@@ -1,4 +1,4 @@
-//! What was done, the newest week first.
+//! Journal entries, newest week first.
 
 use ratatui::layout::Rect;
 
@@ -10,7 +10,6 @@ use crate::context::{Figure, Look};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
 
-/// The entries.
 pub struct EntriesPane;
 
 impl Pane<Journal> for EntriesPane {

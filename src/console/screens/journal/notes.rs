@@ -1,4 +1,4 @@
-//! The notes of the run.
+//! Notes of the run.
 
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::Rect;
@@ -10,7 +10,6 @@ use crate::context::Look;
 use crate::screens::panes::{Border, Pane, Seat};
 use novamind_tui::canvas::Canvas;
 
-/// The editor of the notes.
 pub struct NotesPane;
 
 impl Pane<Journal> for NotesPane {

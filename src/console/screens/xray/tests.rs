@@ -162,7 +162,7 @@ fn what_is_typed_is_read_or_said_to_be_wrong() {
     for (expected, text, part) in [
         (Group, "S99", "there is no group S99"),
         (Part, "servise", "did you mean service?"),
-        (Customer, "-4", "the number of a customer"),
+        (Customer, "-4", "a customer number"),
         (Days, "0", "a number of days"),
         (Condition, "churn >", ""),
     ] {

@@ -65,7 +65,7 @@ screens! {
 
 /// State of a screen: receives news and the results of its readings.
 pub trait ScreenState {
-    /// Readings that the screen needs from the database.
+    /// Returns the readings that the screen needs from the database.
     fn readings(&self) -> &'static [Reading] {
         &[]
     }
@@ -95,37 +95,37 @@ pub trait ScreenState {
     /// Called when the screen becomes visible and when the user leaves it.
     fn looked_at(&mut self) {}
 
-    /// Number of unread items, for the badge.
+    /// Returns the number of unread items, for the badge.
     fn unseen(&self) -> usize {
         0
     }
 
-    /// Name of the detail that is open next to a list or in its place: a group or a tool.
+    /// Returns the name of the detail that is open next to a list or in its place: a group or a tool.
     fn open_here(&self, _: &Look<'_>) -> Option<String> {
         None
     }
 
-    /// Whether the open detail has replaced the list that led to it.
+    /// Returns whether the open detail has replaced the list that led to it.
     fn covers_list(&self) -> bool {
         false
     }
 
-    /// Number of levels that esc closes on this screen, without those that every pane has.
+    /// Returns the number of levels that esc closes on this screen, without those that every pane has.
     fn opened(&self) -> usize {
         0
     }
 
-    /// Kind and name of the open object, as the record stores them.
+    /// Returns the kind and name of the open object, as the record stores them.
     fn open_object(&self, _: &Look<'_>) -> Option<(&'static str, String)> {
         None
     }
 
-    /// Name of the text field being edited, as the record stores it, and its contents.
+    /// Returns the name of the text field being edited, as the record stores it, and its contents.
     fn edited(&self) -> Option<(String, String)> {
         None
     }
 
-    /// Whether unsent text would be lost if the program ended.
+    /// Returns whether unsent text would be lost if the program ended.
     fn holds_unsent_text(&self) -> bool {
         false
     }
@@ -133,29 +133,29 @@ pub trait ScreenState {
 
 /// A screen's behavior and appearance. Screens made of panes implement it through [`panes::Paned`].
 pub trait Screen: ScreenState {
-    /// Scopes of the focused pane, innermost first; the caller adds the global scope. If the first is a text
-    /// scope, keys type characters.
+    /// Returns the scopes of the focused pane, innermost first; the caller adds the global scope. If the
+    /// first is a text scope, keys type characters.
     fn scopes(&self) -> Vec<Scope>;
 
-    /// Whether a digit starts a number at the focus instead of switching screens.
+    /// Returns whether a digit starts a number at the focus instead of switching screens.
     fn takes_numbers(&self) -> bool;
 
-    /// Actions for the footer.
+    /// Returns the actions for the footer.
     fn hints(&self) -> Vec<Action>;
 
-    /// Keys of all panes, those of the focused pane first.
+    /// Returns the keys of all panes, those of the focused pane first.
     fn pane_keys(&self, look: &Look<'_>) -> Vec<PaneKeys>;
 
-    /// Number of panes that can take the focus.
+    /// Returns the number of panes that can take the focus.
     fn panes(&self) -> usize;
 
-    /// Index of the focused pane.
+    /// Returns the index of the focused pane.
     fn focus(&self) -> usize;
 
     /// Moves the focus to a pane.
     fn set_focus(&mut self, pane: usize);
 
-    /// Number of levels that esc closes on this screen.
+    /// Returns the number of levels that esc closes on this screen.
     fn depth(&self) -> usize;
 
     /// Returns the selected figure.

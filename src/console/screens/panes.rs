@@ -49,7 +49,7 @@ pub trait Pane<S> {
         None
     }
 
-    /// Scopes while it has the focus, innermost first.
+    /// Returns the scopes while it has the focus, innermost first.
     fn scopes(&self, screen: &S) -> Vec<Scope> {
         match self.table(screen) {
             Some(table) if table.is_typing() => vec![Scope::Field, Scope::List],
@@ -57,12 +57,12 @@ pub trait Pane<S> {
         }
     }
 
-    /// Whether a digit starts a number here instead of switching screens.
+    /// Returns whether a digit starts a number here instead of switching screens.
     fn takes_numbers(&self, _: &S) -> bool {
         false
     }
 
-    /// Actions for the footer.
+    /// Returns the actions for the footer.
     fn hints(&self, _: &S) -> Vec<Action> {
         Vec::new()
     }
@@ -147,7 +147,7 @@ pub trait Paned: ScreenState + Sized + 'static {
     /// Identifiers of its panes.
     type Name: Copy + PartialEq + 'static;
 
-    /// Panes that can take the focus now, in tab order.
+    /// Returns the panes that can take the focus now, in tab order.
     fn panes(&self) -> &'static [Self::Name];
 
     /// Returns the pane with this identifier.

@@ -17,9 +17,7 @@ use novamind_tui::widgets::scale::ticks;
 
 /// Minimum width of a week, with the gap.
 const NARROWEST: u16 = 3;
-/// Maximum width.
 const WIDEST: u16 = 9;
-/// Width of the figures at the side.
 const SIDE: u16 = 8;
 
 pub struct BarsPane;
@@ -145,7 +143,7 @@ impl BarScale {
         BarScale { above, below, dollars: per_row(income, above).max(per_row(costs, below)) }
     }
 
-    /// Row of a value, counted from the top.
+    /// Returns the row of a value, counted from the top.
     fn row(&self, value: f64) -> u16 {
         let rows = (value.abs() / self.dollars).ceil() as u16;
         if value < 0.0 { self.above + rows.min(self.below) } else { self.above - rows.min(self.above) }
@@ -173,7 +171,7 @@ fn draw_side(canvas: &mut Canvas<'_>, area: Rect, scale: &BarScale) {
 /// A category and where it ends in a bar, in eighths of a row from the line.
 type BarEnd = (usize, u32);
 
-/// The categories on one side of a bar, from the line outwards.
+/// Returns the categories on one side of a bar, from the line outwards.
 fn parts(amounts: &Amounts, income: bool, scale: &BarScale, rows: u16) -> Vec<BarEnd> {
     let mut sum = 0.0;
     let own = CATEGORIES.iter().enumerate().filter(|(_, category)| category.income == income);
@@ -184,8 +182,8 @@ fn parts(amounts: &Amounts, income: bool, scale: &BarScale, rows: u16) -> Vec<Ba
     end.collect()
 }
 
-/// The two parts drawn in a row of eighths: the category next to the line, its size, and the category beyond
-/// it.
+/// Returns the two parts drawn in a row of eighths: the category next to the line, its size, and the category
+/// beyond it.
 fn in_row(parts: &[BarEnd], row: u16) -> Option<(usize, u32, Option<usize>)> {
     let (from, to) = (u32::from(row) * 8, u32::from(row) * 8 + 8);
     let mut start = 0;
@@ -231,7 +229,6 @@ fn draw_week(canvas: &mut Canvas<'_>, column: Rect, line: u16, amounts: &Amounts
     }
 }
 
-/// Whether colors distinguish the categories.
 fn in_colours(canvas: &Canvas<'_>) -> bool {
     canvas.marker != Marker::Dot && canvas.theme.colours_apart(COUNT)
 }
@@ -268,7 +265,7 @@ fn draw_net(canvas: &mut Canvas<'_>, place: Rect, amounts: &Amounts) {
     canvas.aligned(place, &fit(&text, place.width as usize), role, Align::Right);
 }
 
-/// Lines of the legend: categories with entries, and their text.
+/// Returns the lines of the legend: categories with entries, and their text.
 fn legend(books: &Books, width: usize) -> Vec<Vec<(usize, String)>> {
     let mut lines: Vec<Vec<(usize, String)>> = Vec::new();
     let mut used = width;
@@ -325,7 +322,6 @@ mod tests {
         assert_eq!(costs.last(), Some(&(11, 24)), "no bar exceeds its area");
     }
 
-    /// The bars of a company as cells, in a theme and with a marker.
     fn painted(theme: &str, marker: Marker) -> ratatui::buffer::Buffer {
         use crate::test_kit::played;
         let books = Books::of(&novamind_worker::company::Company::of(&played(6)));

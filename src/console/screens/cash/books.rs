@@ -65,7 +65,7 @@ impl Pane<Cash> for BooksPane {
     }
 }
 
-/// The subject of the selected row, in the weeks of the selected column.
+/// Returns the subject of the selected row, in the weeks of the selected column.
 fn selected(cash: &Cash) -> Option<Selected> {
     let (subject, week) = (cash.subject()?, cash.week());
     let weeks = match cash.table.selected_column() {
@@ -84,7 +84,7 @@ fn week_words(week: u32, company: &Company) -> String {
     format!("week {week} · days {from} to {}", to.min(company.seen.day.max(from)))
 }
 
-/// The table of a week: columns, subjects of the rows, rows.
+/// Returns the table of a week: columns, subjects of the rows, rows.
 pub fn table_of(books: &Books, week: u32) -> (Vec<Column>, Vec<Subject>, Vec<Vec<Cell>>) {
     let before = week.saturating_sub(1);
     let columns = vec![

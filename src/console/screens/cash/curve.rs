@@ -16,7 +16,6 @@ use novamind_tui::widgets::chart::{note_room, summary, zero_if_near};
 use novamind_tui::widgets::{Axis, Line, Plot, Side, Unit};
 use novamind_worker::company::Company;
 
-/// Width of the figures next to the bars.
 const SIDE: u16 = 8;
 
 pub struct CurvePane;
@@ -69,7 +68,7 @@ impl Pane<Cash> for CurvePane {
     }
 }
 
-/// The net result of the selected week.
+/// Returns the net result of the selected week.
 fn net(cash: &Cash) -> Option<Selected> {
     Some((Subject::Net, (cash.week(), cash.week())))
 }

@@ -71,18 +71,15 @@ impl Pane<Cash> for ForecastsPane {
     }
 }
 
-/// Forecasts of one horizon.
 #[derive(Default)]
 pub struct Outlook {
     all: Vec<ScoredForecast>,
     horizons: Vec<u32>,
-    /// Index of the shown horizon.
     horizon: usize,
     table: Table,
 }
 
 impl Outlook {
-    /// Updates the forecasts.
     pub fn renew(&mut self, company: &Company) {
         self.all = filed_forecasts(&company.journal, &company.cash_by_day);
         self.horizons = company.scores.iter().map(|score| score.horizon_days).collect();
@@ -93,7 +90,7 @@ impl Outlook {
         self.horizons.get(self.horizon).copied().unwrap_or(7)
     }
 
-    /// Forecasts of the shown horizon, in order of filing.
+    /// Returns the forecasts of the shown horizon, in order of filing.
     fn shown(&self) -> impl DoubleEndedIterator<Item = &ScoredForecast> {
         let horizon = self.horizon();
         self.all.iter().filter(move |filed| filed.forecast.horizon_days == horizon)
@@ -128,13 +125,13 @@ impl Outlook {
         self.table.act(Action::First, page);
     }
 
-    /// Forecasts in table order: due forecasts, newest first, then open ones.
+    /// Returns the forecasts in table order: due forecasts, newest first, then open ones.
     fn listed(&self) -> impl Iterator<Item = &ScoredForecast> {
         let known = self.shown().filter(|one| one.outcome.is_some()).rev();
         known.chain(self.shown().filter(|one| one.outcome.is_none()))
     }
 
-    /// The selected forecast, with a query for its rows.
+    /// Returns the selected forecast, with a query for its rows.
     fn figure(&self) -> Option<Figure> {
         let filed = self.listed().nth(self.table.selected()?)?;
         let sql = format!(
@@ -146,7 +143,7 @@ impl Outlook {
         Some(Figure { title, term: "forecast", sql: Some(sql), why: None })
     }
 
-    /// Results of the horizon, longest wording first.
+    /// Returns the results of the horizon, longest wording first.
     fn scores(&self, company: &Company) -> Vec<String> {
         match company.scores.get(self.horizon).filter(|score| score.scored > 0) {
             Some(score) if !company.shows_calibration() => vec![format!("{} came due", score.scored)],

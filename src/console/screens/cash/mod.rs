@@ -52,10 +52,8 @@ pub struct Cash {
     /// The selected week; `None` for the last one.
     week: Option<u32>,
     table: Table,
-    /// Subjects of the table rows.
     subjects: Vec<Subject>,
     outlook: Outlook,
-    /// Selected step of the waterfall.
     step: usize,
 }
 
@@ -68,7 +66,6 @@ impl Cash {
         self.week.unwrap_or(last).min(last)
     }
 
-    /// Rebuilds the table of the selected week.
     fn refresh(&mut self) {
         let (columns, subjects, rows) = table_of(&self.books, self.week());
         if self.subjects.is_empty() {
@@ -100,17 +97,16 @@ impl Cash {
         true
     }
 
-    /// The subject of the selected row.
     fn subject(&self) -> Option<Subject> {
         self.table.selected().and_then(|row| self.subjects.get(row)).copied()
     }
 
-    /// The subject of the selected row in the selected week.
+    /// Returns the subject of the selected row in the selected week.
     fn subject_of_week(&self) -> Option<Selected> {
         Some((self.subject()?, (self.week(), self.week())))
     }
 
-    /// The steps from the previous week's cash to the selected week's.
+    /// Returns the steps from the previous week's cash to the selected week's.
     fn steps(&self, company: &Company) -> Vec<CashStep> {
         waterfall(&self.books, company, self.week(), usize::MAX)
     }
@@ -130,12 +126,10 @@ impl Cash {
     }
 }
 
-/// Opens the ledger rows of the selection.
 fn ledger_rows(selected: Option<Selected>) -> Vec<Effect> {
     selected.map(|(subject, weeks)| Effect::RunSql(statement(&subject, weeks))).into_iter().collect()
 }
 
-/// Keys of the panes that change the week.
 fn week_keys(look: &Look<'_>) -> String {
     let label = |action| look.keys.label(action).unwrap_or_default();
     let keys = format!("{} {} another week", label(Action::Left), label(Action::Right));
@@ -198,7 +192,7 @@ impl Paned for Cash {
 }
 
 impl Cash {
-    /// Ledger, waterfall and curve above the weeks and forecasts.
+    /// Draws the ledger, waterfall and curve above the weeks and forecasts.
     fn arrange_large(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let rows = self.table.rows().len() as u16 + 3;
         let [top, below] = Layout::vertical([

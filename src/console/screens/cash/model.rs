@@ -8,13 +8,11 @@ use novamind_report::category_name;
 use novamind_record::figures::{Booked, WeekFigure};
 use novamind_session::{Category, entries_of_weeks, week_of};
 
-/// A ledger category on this screen.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Shown {
     pub category: Category,
     /// Glyph in bars; unique, for terminals without colors or block glyphs.
     pub glyph: char,
-    /// Whether it is income.
     pub income: bool,
 }
 
@@ -68,12 +66,12 @@ impl Books {
         Books { weeks, last }
     }
 
-    /// The last simulated week.
+    /// Returns the last simulated week.
     pub fn last(&self) -> u32 {
         self.last
     }
 
-    /// The week with the purchases since the last simulated one.
+    /// Returns the week with the purchases since the last simulated one.
     pub fn open_week(&self) -> u32 {
         self.weeks.keys().next_back().copied().unwrap_or(0)
     }
@@ -82,7 +80,7 @@ impl Books {
         self.weeks.get(&week).copied().unwrap_or([0.0; COUNT])
     }
 
-    /// Mean of up to four weeks that end with the given week.
+    /// Returns the mean of up to four weeks that end with the given week.
     pub fn mean_of_four(&self, week: u32) -> Amounts {
         let from = week.saturating_sub(3).max(1);
         let count = f64::from((week + 1).saturating_sub(from).max(1));
@@ -93,7 +91,6 @@ impl Books {
         mean
     }
 
-    /// Sums over the whole run.
     pub fn total(&self) -> Amounts {
         let mut total = [0.0; COUNT];
         for amounts in self.weeks.values() {
@@ -102,7 +99,7 @@ impl Books {
         total
     }
 
-    /// Whether a category has any entry.
+    /// Returns whether a category has any entry.
     pub fn is_used(&self, category: usize) -> bool {
         self.weeks.values().any(|amounts| amounts[category] != 0.0)
     }
@@ -125,13 +122,13 @@ fn amounts_of(booked: &Booked) -> Amounts {
     std::array::from_fn(|at| booked.of(CATEGORIES[at].category))
 }
 
-/// Sum of the income or of the costs.
+/// Returns the sum of the income or of the costs.
 pub fn side(amounts: &Amounts, income: bool) -> f64 {
     let own = amounts.iter().zip(&CATEGORIES).filter(|(_, category)| category.income == income);
     own.map(|(amount, _)| amount).sum()
 }
 
-/// First and last day of a week; week 0 is the day before the first.
+/// Returns the first and last day of a week; week 0 is the day before the first.
 pub fn days_of(week: u32) -> (u32, u32) {
     match week {
         0 => (0, 0),
@@ -139,7 +136,7 @@ pub fn days_of(week: u32) -> (u32, u32) {
     }
 }
 
-/// Cash at the end of the previous week, and at the end of the week (now, if it is open).
+/// Returns the cash at the end of the previous week, and at the end of the week (now, if it is open).
 pub fn cash_around(company: &Company, week: u32) -> Option<(f64, f64)> {
     let ended = |week: u32| company.weeks.get(week.checked_sub(1)? as usize).map(|figures| figures.cash);
     let before = match week.checked_sub(1)? {
@@ -152,18 +149,17 @@ pub fn cash_around(company: &Company, week: u32) -> Option<(f64, f64)> {
 /// A step of the waterfall.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CashStep {
-    /// Label.
     pub name: String,
     /// Cash before the step. For a level, both values are equal.
     pub from: f64,
-    /// Cash after the step.
     pub to: f64,
     /// Whether it is the initial or final cash.
     pub is_level: bool,
     pub subject: Subject,
 }
 
-/// Steps of a week in at most `most` rows: income first, then costs by size; the smallest costs are combined.
+/// Returns the steps of a week in at most `most` rows: income first, then costs by size; the smallest costs
+/// are combined.
 pub fn waterfall(books: &Books, company: &Company, week: u32, most: usize) -> Vec<CashStep> {
     let Some((before, after)) = cash_around(company, week) else { return Vec::new() };
     let amounts = books.week(week);
@@ -195,13 +191,13 @@ pub fn waterfall(books: &Books, company: &Company, week: u32, most: usize) -> Ve
     steps
 }
 
-/// Dollars with an explicit sign.
+/// Formats dollars with an explicit sign.
 pub fn money(value: f64) -> String {
     let sign = if value <= -0.5 { "-" } else { "" };
     format!("{sign}${}", grouped(value.abs(), 0))
 }
 
-/// Query for the ledger rows of a subject in a range of weeks.
+/// Returns the query for the ledger rows of a subject in a range of weeks.
 pub fn statement(what: &Subject, (first, last): (u32, u32)) -> String {
     let condition = match what {
         Subject::Category(at) => format!("\n    AND category = '{}'", CATEGORIES[*at].category.id()),
@@ -216,14 +212,10 @@ pub fn statement(what: &Subject, (first, last): (u32, u32)) -> String {
     )
 }
 
-/// Subject of a table row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Subject {
-    /// A category.
     Category(usize),
-    /// All income.
     Income,
-    /// All costs.
     Costs,
     /// Income minus costs.
     Net,
@@ -239,7 +231,6 @@ impl Subject {
         }
     }
 
-    /// The glossary term.
     pub fn term(self) -> &'static str {
         match self {
             Subject::Category(at) => match CATEGORIES[at].category {
@@ -251,7 +242,7 @@ impl Subject {
         }
     }
 
-    /// The weekly figure that it corresponds to.
+    /// Returns the weekly figure that it corresponds to.
     pub fn figure(self) -> Option<WeekFigure> {
         match self {
             Subject::Category(at) => WeekFigure::of_category(CATEGORIES[at].category),

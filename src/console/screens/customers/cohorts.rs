@@ -18,7 +18,6 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::note_room;
 use novamind_tui::widgets::table::first_row;
 
-/// Width of the column with cohort names and sizes.
 const NAMES: u16 = 14;
 const CELL: u16 = 5;
 
@@ -67,12 +66,11 @@ impl Pane<Customers> for CohortsPane {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Cohort {
     pub size: f64,
-    /// Cancellations by week.
     left: BTreeMap<u32, f64>,
 }
 
 impl Cohort {
-    /// Share still subscribed at the end of a week.
+    /// Returns the share still subscribed at the end of a week.
     pub fn kept(&self, week: u32) -> f64 {
         let gone: f64 = self.left.range(..=week).map(|(_, left)| left).sum();
         if self.size > 0.0 { 1.0 - gone / self.size } else { 0.0 }
@@ -99,7 +97,7 @@ impl Cohorts {
         all
     }
 
-    /// Sign-up weeks of a group, newest first.
+    /// Returns the sign-up weeks of a group, newest first.
     fn weeks(&self, group: Group) -> Vec<(u32, &Cohort)> {
         let own = self.0.get(&group).into_iter().flatten();
         let mut weeks: Vec<(u32, &Cohort)> = own.map(|(week, cohort)| (*week, cohort)).collect();
@@ -107,7 +105,7 @@ impl Cohorts {
         weeks
     }
 
-    /// Mean share kept after `since` weeks, over the cohorts that are at least that old.
+    /// Returns the mean share kept after `since` weeks, over the cohorts that are at least that old.
     fn mean(&self, group: Group, since: u32, now: u32) -> Option<f64> {
         let old = self.weeks(group).into_iter().filter(|(week, _)| week + since <= now);
         let (kept, size) = old.fold((0.0, 0.0), |(kept, size), (week, cohort)| {
@@ -132,12 +130,10 @@ impl Cohorts {
     }
 }
 
-/// Selected cell of the triangle.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct CohortPlace {
     /// Index of the cohort, newest first.
     pub cohort: usize,
-    /// Weeks since sign-up.
     pub since: usize,
 }
 
@@ -158,7 +154,8 @@ impl CohortPlace {
         self.since = self.since.min(most as usize);
     }
 
-    /// The selected share, with a query for the customers who were still subscribed at the end of the week.
+    /// Returns the selected share, with a query for the customers who were still subscribed at the end of the
+    /// week.
     pub fn figure(self, cohorts: &Cohorts, group: Group) -> Option<Figure> {
         let (week, cohort) = *cohorts.weeks(group).get(self.cohort)?;
         let until = week + self.since as u32;
@@ -178,7 +175,7 @@ impl CohortPlace {
     }
 }
 
-/// Glyph of a share; fuller glyphs mean higher retention.
+/// Returns the glyph of a share; fuller glyphs mean higher retention.
 fn shade(share: f64) -> &'static str {
     match share {
         share if share >= 0.9 => "█",

@@ -13,7 +13,6 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell, Column, spark};
 use novamind_worker::company::Company;
 
-/// Content of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum What {
     Group,
@@ -65,7 +64,7 @@ static COLUMNS: [(What, &str, &str); 23] = [
     (What::Name, "name", "customer-group"),
 ];
 
-/// Visible columns; those with true values need an open x-ray.
+/// Returns the visible columns; those with true values need an open x-ray.
 fn shown(company: &Company) -> impl Iterator<Item = &'static (What, &'static str, &'static str)> {
     let has_hidden = company.hidden.is_some();
     COLUMNS.iter().filter(move |(what, ..)| has_hidden || !matches!(what, What::True(_)))
@@ -80,8 +79,8 @@ pub fn columns(company: &Company) -> Vec<Column> {
     shown(company).map(column).collect()
 }
 
-/// Lowest and highest market share by the group's market study: individuals for individual groups,
-/// enterprises otherwise.
+/// Returns the lowest and highest market share by the group's market study: individuals for individual
+/// groups, enterprises otherwise.
 fn of_market(group: Group, facts: &CustomerFacts, company: &Company) -> Option<(f64, f64)> {
     let (market, noise) = (company.insights.get(&group)?.estimates.market_cap, company.fit(group)?.noise);
     let (least, most) = truth_behind(market as f64, noise);
@@ -171,7 +170,7 @@ fn new_cell(facts: &CustomerFacts, week: u32) -> Cell {
     Cell::number(now, format!("{glyph}{}", grouped(now, 0))).role(role)
 }
 
-/// The figure of a group in a column, with a query for its rows.
+/// Returns the figure of a group in a column, with a query for its rows.
 pub fn figure(group: Group, column: usize, company: &Company) -> Option<Figure> {
     let (what, head, term) = *shown(company).nth(column)?;
     let week = company.seen.week;
@@ -195,7 +194,7 @@ pub fn figure(group: Group, column: usize, company: &Company) -> Option<Figure> 
     Some(figure.of_week(quantity(what, group), week))
 }
 
-/// The weekly figure that a column shows for a group; for the name columns, the number of customers.
+/// Returns the weekly figure that a column shows for a group; for the name columns, the number of customers.
 fn quantity(what: What, group: Group) -> Option<WeekQuantity> {
     let figure = match what {
         What::Group | What::Segment | What::Name | What::Customers => WeekFigure::Subscribers,
@@ -282,7 +281,6 @@ fn statement(what: What, group: Group, week: u32, day: u32) -> Option<String> {
     })
 }
 
-/// The figure in the column with this heading.
 pub fn figure_named(head: &str, group: Group, company: &Company) -> Option<Figure> {
     let column = shown(company).position(|(_, own, _)| *own == head)?;
     figure(group, column, company)

@@ -89,9 +89,7 @@ impl Pane<Customers> for FactsPane {
 }
 
 struct Fact {
-    /// Text at the left.
     words: String,
-    /// Figures at the right.
     figures: String,
     role: Role,
     /// The figure on the line; `None` for a heading.
@@ -106,7 +104,7 @@ fn fact(words: String, figures: String, title: String, term: &'static str, sql: 
     Fact { words, figures, role: Role::Text, figure: Some(Figure { title, term, sql, why: None }) }
 }
 
-/// Lines of a group; bars are `bars` cells wide.
+/// Returns the lines of a group; bars are `bars` cells wide.
 fn facts(company: &Company, market: &MarketRows, facts: &CustomerFacts, group: Group, bars: usize) -> Vec<Fact> {
     // Money comes last: small windows cut the end, and it changes least.
     let mut lines = companies(company, group);
@@ -116,7 +114,7 @@ fn facts(company: &Company, market: &MarketRows, facts: &CustomerFacts, group: G
     lines
 }
 
-/// The funnel of enterprises from lead to deal.
+/// Returns the funnel of enterprises from lead to deal.
 fn companies(company: &Company, group: Group) -> Vec<Fact> {
     let Some(funnel) = company.funnels.iter().find(|funnel| funnel.group == group) else { return Vec::new() };
     let asked = "SELECT DISTINCT c.customer_id, c.created_day, t.day AS asked_day, t.seat_count\nFROM customers c\n\

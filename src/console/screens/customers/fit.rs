@@ -18,10 +18,8 @@ use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::text::{number, wrapped};
 use novamind_tui::theme::Role;
 
-/// Width of the labels at the left.
 const NAMES: usize = 8;
 
-/// Estimated requirements of a group next to the plans.
 pub struct FitPane;
 
 impl Pane<Customers> for FitPane {
@@ -82,7 +80,7 @@ fn line(text: String, role: Role) -> FitLine {
     FitLine { text, role }
 }
 
-/// All lines of the pane, at most `width` columns wide.
+/// Returns all lines of the pane, at most `width` columns wide.
 fn lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine> {
     let company = fit.group.is_enterprise();
     let mut lines = vec![line(format!("quality  required {}", fit.floor.quality()), Role::Header)];
@@ -137,7 +135,7 @@ fn lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine>
     lines
 }
 
-/// Role of a line that all plans share.
+/// Returns the role of a line that all plans share.
 fn worst(fit: &Fit, concern: Concern) -> Role {
     match Plan::ALL.iter().any(|plan| fit.missing(*plan, concern).is_some()) {
         true => Role::Bad,
@@ -145,7 +143,7 @@ fn worst(fit: &Fit, concern: Concern) -> Role {
     }
 }
 
-/// A plan next to a range: `A T1 ███▒▒▒▒  0.1200 short 0.0610`.
+/// Returns a plan next to a range: `A T1 ███▒▒▒▒  0.1200 short 0.0610`.
 fn bar_line(
     fit: &Fit,
     (plan, concern): (Plan, Concern),
@@ -165,7 +163,7 @@ fn bar_line(
     line(format!(" {plan} {name:<4} {bar} {shown:>9} {verdict}"), role)
 }
 
-/// A bar up to a figure, followed by the part of the range above it.
+/// Returns a bar up to a figure, followed by the part of the range above it.
 fn bar_of(figure: f64, range: TruthRange, most: f64, cells: usize) -> String {
     let per_cell = if most > 0.0 { most / cells as f64 } else { 1.0 };
     let cell = |at: usize| {

@@ -59,10 +59,8 @@ impl Pane<Customers> for ChannelsPane {
     }
 }
 
-/// Selected cell.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct HeatPlace {
-    /// Index of the channel.
     pub channel: usize,
     /// Index of the group among the known ones.
     pub group: usize,
@@ -165,7 +163,7 @@ fn draw_cell(canvas: &mut Canvas<'_>, cell: Rect, value: Option<f64>, best: f64,
     canvas.text(Rect { x: cell.x + CELL - 1, width: 1, ..cell }, glyph, role);
 }
 
-/// The selected figure, with a query for its rows.
+/// Returns the selected figure, with a query for its rows.
 fn figure(company: &Company, place: HeatPlace) -> Option<Figure> {
     let (channel, group) = (Channel::ALL.get(place.channel)?, company.seen.known_groups.get(place.group)?);
     let sql = format!(
@@ -178,7 +176,6 @@ fn figure(company: &Company, place: HeatPlace) -> Option<Figure> {
     Some(Figure { title, term: "cost-per-lead", sql: Some(sql), why: None })
 }
 
-/// Describes the selected pair.
 fn words(company: &Company, market: &MarketRows, place: HeatPlace) -> String {
     let (Some(channel), Some(group)) =
         (Channel::ALL.get(place.channel), company.seen.known_groups.get(place.group))

@@ -9,17 +9,14 @@ use novamind_tui::widgets::Cell;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TrueValue {
-    /// Mean satisfaction of the subscribers.
     Satisfaction,
     Reputation,
-    /// Expected leads on the day.
     Leads,
-    /// Market cap.
     Market,
 }
 
 impl TrueValue {
-    /// Name in titles, such as `true satisfaction`.
+    /// Returns the name in titles, such as `true satisfaction`.
     pub fn title(self) -> &'static str {
         match self {
             TrueValue::Satisfaction => "true satisfaction",

@@ -98,12 +98,11 @@ impl Customers {
         self.select_open();
     }
 
-    /// The open group, or the group selected in the list.
+    /// Returns the open group, or the group selected in the list.
     fn group(&self, company: &Company) -> Option<Group> {
         company.seen.known_groups.get(self.open.or(self.table.selected())?).copied()
     }
 
-    /// Opens the next or previous group.
     fn turn_to(&mut self, other: impl Fn(usize) -> usize, company: &Company) {
         let last = company.seen.known_groups.len().saturating_sub(1);
         self.open = self.open.map(|open| other(open).min(last));

@@ -10,7 +10,6 @@ use novamind_database::{Rows, number_at, text_at};
 use novamind_tools::ToolId;
 use novamind_session::identifiers::{Channel, Group, Plan};
 
-/// Weeks in the charts.
 pub const WEEKS: u32 = 12;
 
 /// Subscriptions of a group to a plan.
@@ -55,19 +54,19 @@ impl CustomerFacts {
         self.weeks.get(&week).copied().unwrap_or_default()
     }
 
-    /// Sum over the last `count` weeks.
+    /// Returns the sum over the last `count` weeks.
     pub fn last(&self, week: u32, count: u32, figure: impl Fn(&Flow) -> f64) -> f64 {
         let from = (week + 1).saturating_sub(count);
         self.weeks.range(from..=week.max(from)).map(|(_, flow)| figure(flow)).sum()
     }
 
-    /// A figure of the last weeks, oldest first, without weeks before the start.
+    /// Returns a figure of the last weeks, oldest first, without weeks before the start.
     pub fn trend(&self, week: u32, figure: impl Fn(&Flow) -> f64) -> Vec<(u32, f64)> {
         let from = (week + 1).saturating_sub(WEEKS).max(1);
         (from..=week).map(|week| (week, figure(&self.week(week)))).collect()
     }
 
-    /// Subscriptions at the end of each of the last weeks, computed backwards from today's.
+    /// Returns the subscriptions at the end of each of the last weeks, computed backwards from today's.
     pub fn stock(&self, week: u32) -> Vec<(u32, f64)> {
         let mut stock = self.sum(|held| held.customers);
         let mut all = Vec::new();
@@ -80,19 +79,19 @@ impl CustomerFacts {
         all
     }
 
-    /// 30-day churn as a share.
+    /// Returns the 30-day churn as a share.
     pub fn churn(&self) -> Option<f64> {
         let before = self.sum(|held| held.since_30_days) + self.lost_in_30_days;
         (before > 0.0).then(|| self.lost_in_30_days / before)
     }
 
-    /// Dollars per month and seat.
+    /// Returns the dollars per month and seat.
     pub fn revenue_per_seat(&self) -> Option<f64> {
         let seats = self.sum(|held| held.seats);
         (seats > 0.0).then(|| self.sum(|held| held.monthly) / seats)
     }
 
-    /// Units per seat on the last day.
+    /// Returns the units per seat on the last day.
     pub fn usage(&self) -> Option<f64> {
         let users = self.sum(|held| held.users);
         (users > 0.0).then(|| self.sum(|held| held.units) / users)
@@ -103,18 +102,16 @@ impl CustomerFacts {
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MeasuredGroup {
     pub leads: f64,
-    /// Dollars.
     pub spend: f64,
 }
 
 impl MeasuredGroup {
-    /// Leads per $1,000; `None` if nothing was spent.
+    /// Returns the leads per $1,000; `None` if nothing was spent.
     pub fn per_thousand(&self) -> Option<f64> {
         (self.spend > 0.0).then(|| self.leads / self.spend * 1000.0)
     }
 }
 
-/// All figures from the readings.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct MarketRows {
     groups: BTreeMap<Group, CustomerFacts>,
@@ -126,17 +123,16 @@ impl MarketRows {
         self.groups.get(&group).cloned().unwrap_or_default()
     }
 
-    /// Results of a channel in a group over the last four weeks.
+    /// Returns the results of a channel in a group over the last four weeks.
     pub fn measured(&self, channel: Channel, group: Group) -> MeasuredGroup {
         self.channels.get(&(channel.index(), group)).copied().unwrap_or_default()
     }
 
-    /// Dollars spent on ads for a group in the last four weeks.
+    /// Returns the dollars spent on ads for a group in the last four weeks.
     pub fn ad_spend(&self, group: Group) -> f64 {
         Channel::ALL.iter().map(|channel| self.measured(*channel, group).spend).sum()
     }
 
-    /// Replaces a reading.
     pub fn take(&mut self, reading: Reading, rows: &Rows) {
         self.forget(reading);
         for row in &rows.rows {
@@ -217,19 +213,19 @@ impl MarketRows {
     }
 }
 
-/// Advertising budget of a group in a channel, $ per day.
+/// Returns the advertising budget of a group in a channel, $ per day.
 pub fn ad_budget(company: &Company, channel: Channel, group: Group) -> f64 {
     let spend = company.settings.get(&ToolId::SetTargetedAdSpend).and_then(|all| all.get("targeted_spend"));
     let own = spend.and_then(|all| all.get(channel.id())).and_then(|groups| groups.get(group.id()));
     own.and_then(Value::as_f64).unwrap_or(0.0)
 }
 
-/// Advertising budget of a group in all channels, $ per day.
+/// Returns the advertising budget of a group in all channels, $ per day.
 pub fn ad_budgets(company: &Company, group: Group) -> f64 {
     Channel::ALL.iter().map(|channel| ad_budget(company, *channel, group)).sum()
 }
 
-/// Development budget of a group, $ per day.
+/// Returns the development budget of a group, $ per day.
 pub fn development_budget(company: &Company, group: Group) -> f64 {
     let spend = company.settings.get(&ToolId::SetTargetedDevSpend).and_then(|all| all.get("targeted_spend"));
     spend.and_then(|all| all.get(group.id())).and_then(Value::as_f64).unwrap_or(0.0)

@@ -12,13 +12,11 @@ use crate::screens::panes::{Pane, Seat, draw_pane};
 use crate::context::Look;
 use novamind_tui::canvas::Canvas;
 
-/// Selection in an open group.
 #[derive(Debug)]
 pub struct Opened {
     pub focus: CustomersPane,
     /// Selected link.
     pub choice: usize,
-    /// Selected line of the facts.
     pub fact: usize,
     /// Weeks before the last one.
     pub back: u32,
@@ -26,9 +24,7 @@ pub struct Opened {
     pub flow: usize,
     /// Selected cell of the cohorts.
     pub cohort: cohorts::CohortPlace,
-    /// First visible line of the fit.
     pub fit_line: usize,
-    /// First visible line of the study.
     pub line: usize,
 }
 
@@ -40,7 +36,6 @@ impl Default for Opened {
     }
 }
 
-/// Rows of the fit pane with its border.
 const FIT: u16 = 24;
 
 pub fn arrange(customers: &Customers, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {

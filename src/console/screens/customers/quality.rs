@@ -49,13 +49,14 @@ impl Pane<Customers> for QualityByWeekPane {
     }
 }
 
-/// Delivered quality at the end of each week since the group was found.
+/// Returns the delivered quality at the end of each week since the group was found.
 pub fn quality_by_week(company: &Company, group: Group, plan: Plan) -> Vec<(f64, f64)> {
     let weeks = company.group_weeks.iter().enumerate();
     weeks.filter_map(|(at, week)| Some(((at + 1) as f64, week[group].quality?[plan]))).collect()
 }
 
-/// Lowest and highest required quality, as estimated at the end of each week since the group was found.
+/// Returns the lowest and highest required quality, as estimated at the end of each week since the group was
+/// found.
 pub fn floor_by_week(company: &Company, group: Group) -> Vec<(f64, f64, f64)> {
     let weeks = company.group_weeks.iter().enumerate();
     let end = |(at, week): (usize, &novamind_session::identifiers::ByGroup<novamind_session::GroupWeek>)| {

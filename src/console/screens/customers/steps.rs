@@ -4,7 +4,7 @@ use crate::action::Action;
 use crate::effect::Effect;
 use crate::context::Figure;
 
-/// Index in a list after a movement.
+/// Returns the index in a list after a movement.
 pub fn moved(at: usize, last: usize, action: Action) -> usize {
     match action {
         Action::Up => at.min(last).saturating_sub(1),
@@ -15,7 +15,6 @@ pub fn moved(at: usize, last: usize, action: Action) -> usize {
     }
 }
 
-/// Opens the query of a figure.
 pub fn show_rows(figure: Option<Figure>) -> Vec<Effect> {
     figure.and_then(|figure| figure.sql).map(Effect::EditSql).into_iter().collect()
 }

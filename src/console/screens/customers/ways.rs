@@ -27,7 +27,6 @@ const TOOLS: [(ToolId, &str); 6] = [
 /// Links that are not tools: the market study and the customers.
 const OTHERS: [(&str, &str); 2] = [("Market", "order a study"), ("SQL", "its customers")];
 
-/// Number of links.
 pub const CHOICES: usize = TOOLS.len() + OTHERS.len();
 
 fn choose(choice: usize, group: Group) -> Effect {

@@ -26,7 +26,6 @@ const FLOWS: [(&str, &str, WeekFigure); 3] = [
     ("cancellations", "churn", WeekFigure::Cancellations),
 ];
 
-/// Customers by week above their flows.
 pub struct WeeksPane;
 
 impl WeeksPane {

@@ -9,7 +9,7 @@ use novamind_session::identifiers::{Group, Plan};
 /// Days per month, as on the product screen.
 const MONTH: f64 = 30.0;
 
-/// Sales figures for the rules.
+/// Returns the sales figures for the rules.
 pub fn market_of(company: &Company, usage: &SeatUsage) -> Market {
     let per_plan = |tool: ToolId| Plan::ALL.map(|plan| company.setting(tool, plan.id()));
     let studied = company.insights.iter().map(|(group, told)| (*group, told.estimates.usage_volume));
@@ -22,7 +22,8 @@ pub fn market_of(company: &Company, usage: &SeatUsage) -> Market {
     }
 }
 
-/// Units per day and seat of a group, with the source: usage on the last day, otherwise the market study.
+/// Returns the units per day and seat of a group, with the source: usage on the last day, otherwise the
+/// market study.
 pub fn per_seat(usage: &SeatUsage, company: &Company, group: &str) -> Option<(f64, String)> {
     if let Some(units) = usage.measured(group) {
         return Some((units, format!("{group} on the last day")));
@@ -37,7 +38,6 @@ pub fn per_seat(usage: &SeatUsage, company: &Company, group: &str) -> Option<(f6
 pub struct Money {
     /// Payment of the enterprise.
     pub monthly: f64,
-    /// Compute cost.
     pub compute: Option<f64>,
     /// Quota of the plan and estimated usage, units per day, if the quota is lower. All seats of an
     /// enterprise share one quota.
@@ -54,13 +54,13 @@ impl Money {
         Money { monthly: price * thread.seats, compute, covered }
     }
 
-    /// Share of the payment that remains after compute.
+    /// Returns the share of the payment that remains after compute.
     pub fn margin(&self) -> Option<f64> {
         self.compute.filter(|_| self.monthly > 0.0).map(|compute| 1.0 - compute / self.monthly)
     }
 }
 
-/// Compute cost of a plan's model, $ per unit.
+/// Returns the compute cost of a plan's model, $ per unit.
 fn unit_cost(company: &Company, plan: Plan) -> Option<f64> {
     let tier = company.setting(ToolId::SetModelTiers, plan.id()) as u8;
     Some(company.costs.model_tiers.get(&tier)?.cost_per_usage_unit)

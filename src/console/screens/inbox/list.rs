@@ -124,7 +124,6 @@ fn draw_nobody(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'
     }
 }
 
-/// Text of an empty list.
 fn nobody(inbox: &Inbox, look: &Look<'_>) -> String {
     let key = |action: Action| look.keys.label(action).unwrap_or_default();
     if !inbox.letters.threads.is_empty() {

@@ -84,7 +84,6 @@ const NO_THREAD: &str = "No thread is selected";
 
 const OFFER_HEIGHT: u16 = 10;
 
-/// Filter of the list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum InboxView {
     /// The player must answer.
@@ -119,11 +118,9 @@ pub struct Inbox {
     focus: InboxPane,
     view: InboxView,
     letters: Letters,
-    /// Usage of enterprise seats.
     usage: SeatUsage,
     /// Plans that enterprises named with their prices.
     named: novamind_rules::Letters,
-    /// The rules being edited.
     ruling: Option<Ruling>,
     /// Outcomes of first offers, while they replace the list.
     outcomes: Option<Outcomes>,
@@ -131,15 +128,12 @@ pub struct Inbox {
     table: Table,
     /// Indexes of the listed threads among all threads.
     rows: Vec<usize>,
-    /// Numbers of the marked threads.
     marked: BTreeSet<u32>,
-    /// Edited offers by thread.
     drafts: BTreeMap<u32, Offer>,
     /// Offer to the marked threads.
     rule: Option<Offer>,
     /// Last sent offer that can be reused for other enterprises.
     last: Option<Offer>,
-    /// Index of the selected term.
     term: usize,
     /// Its value while the user types.
     typing: Option<Field>,
@@ -148,7 +142,6 @@ pub struct Inbox {
 }
 
 impl Inbox {
-    /// Updates the threads and the list.
     fn refresh(&mut self, company: &Company) {
         let place = self.place();
         self.letters.settle(self.asking(company), &company.names);
@@ -159,7 +152,7 @@ impl Inbox {
         self.list(place);
     }
 
-    /// Numbers of the listed threads, and of the selected one.
+    /// Returns the numbers of the listed threads, and of the selected one.
     fn place(&self) -> (Vec<u32>, Option<u32>) {
         let shown = self.table.shown().iter().filter_map(|row| self.number_of(*row)).collect();
         (shown, self.here().map(|thread| thread.number))
@@ -180,7 +173,7 @@ impl Inbox {
         }
     }
 
-    /// Waiting threads with all fields that rules use.
+    /// Returns the waiting threads with all fields that rules use.
     fn asking(&self, company: &Company) -> Vec<AskingThread> {
         let market = market_of(company, &self.usage);
         let waiting = company.seen.waiting.iter();
@@ -211,7 +204,7 @@ impl Inbox {
         self.letters.threads.get(*self.rows.get(self.table.selected()?)?)
     }
 
-    /// Recipients of an offer: the marked threads, otherwise the selected one.
+    /// Returns the recipients of an offer: the marked threads, otherwise the selected one.
     fn targets(&self) -> Vec<&Thread> {
         if self.marked.is_empty() {
             return self.here().into_iter().collect();
@@ -220,7 +213,6 @@ impl Inbox {
         self.letters.threads.iter().filter(marked).collect()
     }
 
-    /// The offer being edited.
     fn offer(&self) -> Offer {
         if !self.marked.is_empty() {
             return self.rule.clone().unwrap_or_else(Offer::at_list);
@@ -301,7 +293,7 @@ impl Inbox {
     }
 }
 
-/// List prices of the plans, $ per month and seat.
+/// Returns the list prices of the plans, $ per month and seat.
 fn list_prices(company: &Company) -> [f64; 3] {
     ["A", "B", "C"].map(|plan| company.setting(ToolId::SetPrices, plan))
 }

@@ -8,10 +8,8 @@ use novamind_database::{Rows, number_at, text_at};
 use novamind_session::CompanyNames;
 use novamind_session::identifiers::Plan;
 
-/// One row of a thread.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Turn {
-    /// Index in its thread.
     pub number: u32,
     /// `customer`, `agent` or `system`.
     pub sender: String,
@@ -19,21 +17,18 @@ pub struct Turn {
     pub text: String,
     /// Plans and prices that the player offered.
     pub offers: Vec<(Plan, f64)>,
-    /// Price that the enterprise named.
     pub price: Option<f64>,
     pub day: u32,
     /// Reason for closing the thread; empty if it stays open.
     pub closes: String,
 }
 
-/// State of a thread.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum State {
     /// The enterprise waits for the player, for this number of days.
     Waiting(u32),
     /// The player waits for the enterprise.
     Theirs,
-    /// They agreed.
     Accepted,
     /// The player ended it.
     Rejected,
@@ -43,7 +38,7 @@ pub enum State {
 }
 
 impl State {
-    /// Whether it accepts offers.
+    /// Returns whether it accepts offers.
     pub fn is_open(self) -> bool {
         matches!(self, State::Waiting(_) | State::Theirs)
     }
@@ -59,19 +54,15 @@ impl State {
     }
 }
 
-/// A negotiation.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Thread {
     pub number: u32,
     /// Customer number of the enterprise.
     pub customer: u32,
-    /// Name of the enterprise.
     pub name: String,
-    /// Group of the enterprise.
     pub group: String,
     /// Kind as in the table.
     pub kind: String,
-    /// Number of seats.
     pub seats: f64,
     pub state: State,
     /// Its rows, oldest first.
@@ -81,7 +72,7 @@ pub struct Thread {
 }
 
 impl Thread {
-    /// Name and number of the enterprise.
+    /// Returns the name and number of the enterprise.
     pub fn company(&self) -> String {
         format!("{} #{}", self.name, self.customer)
     }
@@ -96,7 +87,7 @@ impl Thread {
         }
     }
 
-    /// The last price that the enterprise named, with the plan if its message names one.
+    /// Returns the last price that the enterprise named, with the plan if its message names one.
     pub fn asked(&self) -> Option<(Option<Plan>, f64)> {
         if let Some(own) = &self.asking {
             return Some((own.asked_plan, own.waiting.asked?));
@@ -105,7 +96,7 @@ impl Thread {
         Some((plan_in(&turn.text).or_else(|| self.only_offer()), turn.price?))
     }
 
-    /// The plan for its price, or the plan whose price it asks about.
+    /// Returns the plan for its price, or the plan whose price it asks about.
     pub fn asked_plan(&self) -> Option<Plan> {
         match &self.asking {
             Some(own) => own.asked_plan,
@@ -135,7 +126,7 @@ impl Thread {
         })
     }
 
-    /// The player's last offer.
+    /// Returns the player's last offer.
     pub fn offered(&self) -> &[(Plan, f64)] {
         if let Some(own) = &self.asking {
             return &own.waiting.last_offer;
@@ -145,7 +136,6 @@ impl Thread {
     }
 }
 
-/// An enterprise.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Firm {
     pub group: String,
@@ -153,7 +143,6 @@ pub struct Firm {
     pub trade: String,
     /// Culture, decision process and main concern.
     pub manner: [String; 3],
-    /// Status of its subscription.
     pub status: String,
     pub plan: String,
     /// Price per seat and month.
@@ -162,7 +151,6 @@ pub struct Firm {
     pub since: u32,
 }
 
-/// All threads.
 #[derive(Debug, Clone, Default)]
 pub struct Letters {
     read: BTreeMap<u32, Thread>,
@@ -172,7 +160,6 @@ pub struct Letters {
 }
 
 impl Letters {
-    /// Replaces a reading.
     pub fn take(&mut self, reading: Reading, rows: &Rows) {
         match reading {
             Reading::EnterpriseTurns => self.read = threads_of(rows),
@@ -226,7 +213,7 @@ fn of_waiting(asking: AskingThread, read: &mut BTreeMap<u32, Thread>) -> Thread 
     }
 }
 
-/// State of a thread that does not wait for the player.
+/// Returns the state of a thread that does not wait for the player.
 fn state_of(thread: &Thread, firm: Option<&Firm>) -> State {
     let Some(last) = thread.turns.last() else { return State::Lost };
     let there = firm.is_none_or(|firm| matches!(firm.status.as_str(), "lead" | "subscribed"));

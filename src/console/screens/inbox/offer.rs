@@ -11,9 +11,7 @@ pub const TERMS: usize = 3;
 /// The plan of a term.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TermChoice {
-    /// The term is unused.
     Nothing,
-    /// A fixed plan.
     Fixed(Plan),
     /// The plan that the enterprise named with its price.
     Theirs,
@@ -40,7 +38,6 @@ impl Basis {
     }
 }
 
-/// One line of an offer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Term {
     pub plan: TermChoice,
@@ -60,13 +57,12 @@ impl Term {
         }
     }
 
-    /// Its value as text for the input field.
+    /// Returns its value as text for the input field.
     pub fn value_in_words(&self) -> String {
         let decimals = if self.value.fract() == 0.0 && self.basis != Basis::Dollars { 0 } else { 2 };
         grouped(self.value, decimals)
     }
 
-    /// Selects the next plan.
     pub fn turn_plan(&mut self) {
         self.plan = match self.plan {
             TermChoice::Nothing => TermChoice::Fixed(Plan::A),
@@ -86,7 +82,8 @@ impl Term {
         };
     }
 
-    /// Plan and price for a thread; `None` if the term is unused or its reference price is missing.
+    /// Returns the plan and price for a thread; `None` if the term is unused or its reference price is
+    /// missing.
     pub fn price(&self, thread: &Thread, lists: [f64; 3]) -> Option<(Plan, f64)> {
         let asked = thread.asked();
         let plan = match self.plan {
@@ -108,18 +105,17 @@ impl Term {
 pub struct Offer(pub [Term; TERMS]);
 
 impl Offer {
-    /// Plan B at its list price.
     pub fn at_list() -> Offer {
         Offer([Term { plan: TermChoice::Fixed(Plan::B), ..UNUSED }, UNUSED, UNUSED])
     }
 
-    /// The asking price, for the plan that the enterprise named.
+    /// Returns the asking price, for the plan that the enterprise named.
     pub fn as_asked() -> Offer {
         Offer([Term { plan: TermChoice::Theirs, basis: Basis::Asked, value: 100.0 }, UNUSED, UNUSED])
     }
 
-    /// Initial offer to an enterprise: its asking price, otherwise the list price of the plan that it asks
-    /// about.
+    /// Returns the initial offer to an enterprise: its asking price, otherwise the list price of the plan
+    /// that it asks about.
     pub fn first_for(thread: &Thread) -> Offer {
         match (thread.asked_plan(), thread.asked()) {
             (Some(_), Some(_)) => Offer::as_asked(),
@@ -128,12 +124,12 @@ impl Offer {
         }
     }
 
-    /// Whether it can be reused for other enterprises.
+    /// Returns whether it can be reused for other enterprises.
     pub fn is_rule(&self) -> bool {
         self.0.iter().all(|term| term.plan == TermChoice::Nothing || term.basis != Basis::Dollars)
     }
 
-    /// Plans and prices for a thread.
+    /// Returns the plans and prices for a thread.
     ///
     /// # Errors
     /// The reason why nothing can be sent.
@@ -150,7 +146,7 @@ impl Offer {
     }
 }
 
-/// An offer in short form: `B $38.00 · C $61.00`.
+/// Returns an offer in short form: `B $38.00 · C $61.00`.
 pub fn in_words(offers: &[(Plan, f64)]) -> String {
     let one = |(plan, price): &(Plan, f64)| format!("{plan} ${}", grouped(*price, 2));
     offers.iter().map(one).collect::<Vec<_>>().join(" · ")

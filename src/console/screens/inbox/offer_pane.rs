@@ -136,7 +136,7 @@ impl Pane<Inbox> for OfferPane {
     }
 }
 
-/// Column headings that fit.
+/// Returns the column headings that fit.
 fn head(width: u16, batch: bool) -> String {
     let mut worth = if batch { String::new() } else { format!(" {:>8} {:>9}", "per seat", "per mo.") };
     if !batch && width >= WORTH {
@@ -148,7 +148,6 @@ fn head(width: u16, batch: bool) -> String {
     format!("plan   of     {:>8}{worth}", "value")
 }
 
-/// Notes on the offer, and the list prices.
 fn notes(inbox: &Inbox, width: u16, look: &Look<'_>) -> Vec<(String, Role)> {
     let planned = inbox.planned(look.company);
     let mut notes = match planned.first() {
@@ -166,8 +165,8 @@ fn notes(inbox: &Inbox, width: u16, look: &Look<'_>) -> Vec<(String, Role)> {
     notes
 }
 
-/// Notes on an offer, most important first: quota shortfalls, the asking price, and the basis of the compute
-/// estimate, or the estimate itself if its columns do not fit.
+/// Returns the notes on an offer, most important first: quota shortfalls, the asking price, and the basis of
+/// the compute estimate, or the estimate itself if its columns do not fit.
 fn offer_notes(
     inbox: &Inbox,
     thread: &Thread,

@@ -42,7 +42,6 @@ struct FirstOffers {
     signed_percent: f64,
 }
 
-/// The query result and its table.
 #[derive(Debug, Clone, Default)]
 pub struct Outcomes {
     /// `None` until the result arrives.
@@ -51,7 +50,6 @@ pub struct Outcomes {
 }
 
 impl Outcomes {
-    /// Stores the result.
     pub fn take(&mut self, rows: &Rows) {
         let found: Vec<FirstOffers> = rows.rows.iter().map(|row| outcome_of(row)).collect();
         self.table.set(columns(), found.iter().map(row_of).collect());
@@ -79,7 +77,7 @@ fn outcome_of(row: &[novamind_database::Cell]) -> FirstOffers {
     }
 }
 
-/// Columns; narrow windows drop the last ones.
+/// Returns the columns; narrow windows drop the last ones.
 fn columns() -> Vec<Column> {
     let mut columns = vec![Column::numbers("week"), Column::words("group"), Column::words("plan")];
     let numbers = ["$/seat", "threads", "signed", "share", "lost", "waiting"];
@@ -121,12 +119,11 @@ fn statement(own: &FirstOffers) -> String {
 }
 
 impl Inbox {
-    /// The pane in place of the list.
+    /// Returns the pane in place of the list.
     pub(super) fn first_pane(&self) -> InboxPane {
         if self.outcomes.is_some() { InboxPane::Outcomes } else { InboxPane::List }
     }
 
-    /// Returns to the list of threads.
     pub(super) fn close_outcomes(&mut self) {
         self.outcomes = None;
         self.focus = InboxPane::List;

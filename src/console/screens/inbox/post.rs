@@ -22,7 +22,7 @@ const REJECT: ToolId = ToolId::RejectEnterpriseDeal;
 /// A thread with its planned offer, or the reason why nothing is sent.
 pub(super) type Planned<'a> = (&'a Thread, Result<Vec<(Plan, f64)>, String>);
 
-/// Query for the rows of a thread.
+/// Returns the query for the rows of a thread.
 pub(super) fn statement(thread: &Thread) -> Effect {
     Effect::EditSql(format!(
         "SELECT day, turn_number, sender, message_text, offer_json, seat_count, close_reason\n\
@@ -31,7 +31,7 @@ pub(super) fn statement(thread: &Thread) -> Effect {
     ))
 }
 
-/// A figure of a thread, with a query for its turns.
+/// Returns a figure of a thread, with a query for its turns.
 pub(super) fn figure(thread: &Thread, what: &str, term: &'static str) -> Figure {
     let sql = match statement(thread) {
         Effect::EditSql(sql) => Some(sql),
@@ -40,7 +40,7 @@ pub(super) fn figure(thread: &Thread, what: &str, term: &'static str) -> Figure 
     Figure { title: format!("{what} {}", thread.company()), term, sql, why: None }
 }
 
-/// Usage of the group on the last day, the basis of the compute estimate.
+/// Returns the usage of the group on the last day, the basis of the compute estimate.
 pub(super) fn usage_figure(thread: &Thread) -> Figure {
     let group = &thread.group;
     Figure {
@@ -54,13 +54,13 @@ pub(super) fn usage_figure(thread: &Thread) -> Figure {
         )), why: None }
 }
 
-/// Maximum payment of an enterprise for an offer, $ per month.
+/// Returns the maximum payment of an enterprise for an offer, $ per month.
 pub(super) fn monthly(thread: &Thread, offers: &[(Plan, f64)]) -> f64 {
     offers.iter().map(|(_, price)| price * thread.seats).fold(0.0, f64::max)
 }
 
 impl Inbox {
-    /// The planned offer of every recipient.
+    /// Returns the planned offer of every recipient.
     pub(super) fn planned(&self, company: &Company) -> Vec<Planned<'_>> {
         let (offer, lists) = (self.offer(), list_prices(company));
         self.targets().into_iter().map(|thread| (thread, offer.to(thread, lists))).collect()
@@ -162,7 +162,6 @@ impl Inbox {
     }
 }
 
-/// Summarizes a batch.
 pub(super) fn summary(planned: &[Planned<'_>]) -> String {
     let sent = planned.iter().filter_map(|(thread, offers)| Some((*thread, offers.as_ref().ok()?)));
     let (mut companies, mut seats, mut worth) = (0, 0.0, 0.0);

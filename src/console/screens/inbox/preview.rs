@@ -14,10 +14,8 @@ use novamind_tui::theme::Role;
 /// Column width of an enterprise with its name, and without.
 const NAMED: u16 = 28;
 const NUMBERED: u16 = 14;
-/// Minimum width for names.
 const WORTH_A_NAME: u16 = 68;
 
-/// Texts of the border.
 pub fn border(inbox: &Inbox, look: &Look<'_>) -> Border {
     let title = format!("Preview for {}", inbox.planned(look.company).len());
     Border { title, note: "before → offer".to_owned(), ..Border::default() }

@@ -19,8 +19,8 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;
 use novamind_worker::company::Company;
 
-/// Initial rules: accept any request for a plan at its list price or more. Plans without a price are left
-/// out.
+/// Returns the initial rules: accept any request for a plan at its list price or more. Plans without a price
+/// are left out.
 fn first_rules(company: &Company) -> String {
     let rule = |plan: Plan| {
         let list = company.setting(ToolId::SetPrices, plan.id());
@@ -32,7 +32,6 @@ fn first_rules(company: &Company) -> String {
 /// Rules being edited, with their effect.
 #[derive(Debug, Clone)]
 pub struct Ruling {
-    /// The text of the rules.
     pub field: Field,
     /// Whether keys type into the field.
     pub typing: bool,
@@ -58,14 +57,14 @@ impl Ruling {
             .map(|rules| Batch::of(rules, threads.to_vec(), &market_of(company, &inbox.usage)));
     }
 
-    /// Threads that match a rule.
+    /// Returns the threads that match a rule.
     fn meant(&self) -> impl Iterator<Item = &RuledThread> {
         let all = self.outcome.as_ref().map_or(&[][..], |batch| batch.threads.as_slice());
         all.iter().filter(|ruled| ruled.rule.is_some())
     }
 }
 
-/// Layout for small windows: the preview above the rules.
+/// Draws the layout for small windows: the preview above the rules.
 pub fn arrange_small(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
     let [above, below] = Layout::vertical([Constraint::Percentage(45), Constraint::Min(0)]).areas(area);
     draw_pane(inbox, InboxPane::Thread, canvas, above, look);
@@ -84,7 +83,6 @@ impl Inbox {
         Vec::new()
     }
 
-    /// Edits the rules.
     pub(super) fn type_rules(&mut self, company: &Company, edit: &mut dyn FnMut(&mut Field)) {
         let Some(mut ruling) = self.ruling.take() else { return };
         edit(&mut ruling.field);
@@ -128,8 +126,8 @@ impl Inbox {
         self.last_rules.is_some()
     }
 
-    /// The tool calls of the last rules for the threads that wait now, and a summary; `None` if there are
-    /// none.
+    /// Returns the tool calls of the last rules for the threads that wait now, and a summary; `None` if there
+    /// are none.
     pub fn answers_of_before(&self, company: &Company) -> Option<(Vec<(ToolId, Value)>, String)> {
         let rules = novamind_rules::parse(self.last_rules.as_deref()?).ok()?;
         let batch = Batch::of(rules, self.asking(company), &market_of(company, &self.usage));

@@ -14,7 +14,7 @@ use novamind_tools::{Answer, DealResult, DealResults, ToolId};
 use novamind_tui::chord::Chord;
 use novamind_worker::request::Request;
 
-/// A company with waiting threads; every third enterprise is a subscriber with its own price.
+/// Returns a company with waiting threads; every third enterprise is a subscriber with its own price.
 fn crowded_by(threads: u32) -> (Company, Rows, Rows) {
     let mut company = company();
     company.seen.day = 70;
@@ -108,7 +108,6 @@ fn press(screen: &mut Inbox, company: &Company, keys: &str) -> (Vec<Effect>, usi
     (effects, count)
 }
 
-/// Deals of a tool call.
 fn deals(effects: &[Effect]) -> Vec<Value> {
     match effects {
         [Effect::ConfirmCall { arguments, .. } | Effect::Request(Request::Call { arguments, .. })] => {
@@ -118,7 +117,7 @@ fn deals(effects: &[Effect]) -> Vec<Value> {
     }
 }
 
-/// The company and the screen after an answer to all deals.
+/// Returns the company and the screen after an answer to all deals.
 fn answered(screen: &mut Inbox, company: &mut Company, deals: &[Value]) {
     let customers: Vec<u32> = deals.iter().map(|deal| deal[0].as_u64().expect("a number") as u32).collect();
     company.seen.waiting.retain(|thread| !customers.contains(&thread.customer));
@@ -341,7 +340,8 @@ fn an_offer_shows_what_it_earns_after_compute_and_where_the_figures_come_from() 
     assert_eq!(session.query(&turns).expect("rows").rows.len(), thread.turns.len());
 }
 
-/// A run whose leads got first offers with several plans and prices over three weeks, some of them twice.
+/// Returns a run whose leads got first offers with several plans and prices over three weeks, some of them
+/// twice.
 fn offered() -> novamind_session::Session {
     let mut session = courted();
     for week in 0..3 {

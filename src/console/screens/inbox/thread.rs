@@ -78,7 +78,6 @@ pub fn draw_beside(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &Lo
     draw_framed(&Conversation, inbox, canvas, Seat { area, focused: false, number: 0 }, look);
 }
 
-/// The messages of a thread.
 struct Conversation;
 
 impl Pane<Inbox> for Conversation {

@@ -25,7 +25,6 @@ pub const AROUND: u16 = 3;
 /// Height from which the selected run is described below the table.
 const TOLD_FROM: u16 = 7;
 
-/// An empty table of runs.
 pub fn table() -> Table {
     Table::new(vec![
         Column::words("run"),
@@ -37,7 +36,7 @@ pub fn table() -> Table {
     ])
 }
 
-/// The rows of a tree, with the current run marked.
+/// Returns the rows of a tree, with the current run marked.
 pub fn rows(tree: &[Kin], own: &str) -> Vec<Vec<Cell>> {
     tree.iter().map(|kin| row(kin, own)).collect()
 }
@@ -65,7 +64,7 @@ fn row(kin: &Kin, own: &str) -> Vec<Cell> {
 }
 
 impl Journal {
-    /// Whether the run is a branch or has branches.
+    /// Returns whether the run is a branch or has branches.
     pub(super) fn has_tree(&self) -> bool {
         self.tree.len() > 1
     }
@@ -79,7 +78,6 @@ impl Journal {
         vec![Effect::Ask(self.asked.ask(RelatedRunsQuestion))]
     }
 
-    /// Stores the tree.
     pub(super) fn take_tree(&mut self, tree: Vec<Kin>, company: &Company) {
         let run = &company.seen.run;
         let is_first = self.tree.is_empty();
@@ -93,7 +91,8 @@ impl Journal {
         }
     }
 
-    /// Note next to the title of the entries: the filter, or the number of runs in the tree with its key.
+    /// Returns the note next to the title of the entries: the filter, or the number of runs in the tree with
+    /// its key.
     pub(super) fn note(&self, look: &Look<'_>) -> String {
         match (self.table.note(), self.has_tree()) {
             (note, false) => note,

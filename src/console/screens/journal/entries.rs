@@ -114,7 +114,7 @@ impl Group<'_> {
         lines
     }
 
-    /// Heading of a week; `None` for an empty week of a finished run.
+    /// Returns the heading of a week; `None` for an empty week of a finished run.
     fn head(&self, company: &Company) -> Option<String> {
         match self.figures {
             Some(week) => {
@@ -139,7 +139,6 @@ impl Group<'_> {
         }
     }
 
-    /// The complete entry of a week.
     fn whole(&self, company: &Company, head: &str) -> String {
         let mut parts = vec![head.to_owned()];
         if let Some(filed) = &self.filed {
@@ -208,7 +207,7 @@ impl FiledWeek<'_> {
     }
 }
 
-/// A tool call as a line. Undone calls are marked, as are undo and redo.
+/// Returns a tool call as a line. Undone calls are marked, as are undo and redo.
 fn of_call(
     entry: &JournalEntry,
     settings: &mut KnownSettings,
@@ -241,7 +240,7 @@ fn of_call(
     })
 }
 
-/// A parameter change as a line.
+/// Returns a parameter change as a line.
 fn of_parameter(day: u32, key: &str, [old, new]: [&Value; 2], from_day: Option<u32>) -> JournalLine {
     JournalLine {
         day,
@@ -254,7 +253,7 @@ fn of_parameter(day: u32, key: &str, [old, new]: [&Value; 2], from_day: Option<u
     }
 }
 
-/// Query for the stored settings of a call.
+/// Returns the query for the stored settings of a call.
 fn kept_in(spec: &Spec, day: u32) -> Option<String> {
     let table = spec.writes.iter().find(|table| table.starts_with("config_"))?;
     let tool = match *table {
@@ -303,7 +302,7 @@ impl KnownSettings {
     }
 }
 
-/// Numbers of a call with their paths: `targeted_spend linkedin E1`.
+/// Returns the numbers of a call with their paths: `targeted_spend linkedin E1`.
 fn collect(value: &Value, path: &str, leaves: &mut Vec<(String, f64)>) {
     match value {
         Value::Object(fields) => {
@@ -339,7 +338,7 @@ pub fn in_words(value: &Value) -> String {
     }
 }
 
-/// A rounded number; the complete entry has all digits.
+/// Returns a rounded number; the complete entry has all digits.
 fn plain(value: f64) -> String {
     let short = if value.abs() >= 0.01 { (value * 1e4).round() / 1e4 } else { value };
     if short.fract() == 0.0 { number(short) } else { short.to_string() }

@@ -43,12 +43,9 @@ pub struct Journal {
     table: Table,
     /// Title and text of the complete entry of each row.
     wholes: Vec<(String, String)>,
-    /// Figure of each row.
     figures: Vec<Figure>,
-    /// Index of the selected horizon.
     horizon: usize,
     notes: Editor,
-    /// The saved notes.
     kept: String,
     editing: bool,
     /// The tree, with a row for each of its runs.
@@ -83,7 +80,7 @@ impl Journal {
         self.notes.text() != self.kept
     }
 
-    /// Unsaved notes, if they differ from the saved ones.
+    /// Returns the unsaved notes, if they differ from the saved ones.
     pub fn unsaved(&self) -> Option<String> {
         self.is_draft().then(|| self.notes.text())
     }

@@ -13,7 +13,7 @@ use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::theme::Role;
 use novamind_worker::company::Company;
 
-/// Forecasts of a horizon that are due, newest first.
+/// Returns the forecasts of a horizon that are due, newest first.
 pub fn outcomes(company: &Company, horizon: u32) -> Vec<ScoredForecast> {
     let mut all = filed_forecasts(&company.journal, &company.cash_by_day);
     all.retain(|filed| filed.forecast.horizon_days == horizon && filed.outcome.is_some());
@@ -21,7 +21,6 @@ pub fn outcomes(company: &Company, horizon: u32) -> Vec<ScoredForecast> {
     all
 }
 
-/// The figure of a horizon.
 pub fn figure(company: &Company, selected: usize) -> Option<Figure> {
     let horizon = company.scores.get(selected)?.horizon_days;
     Some(Figure {

@@ -21,13 +21,12 @@ use novamind_worker::company::Company;
 /// Marks for the number of competitor news in a column, relative to the maximum.
 const MARKS: [&str; 4] = ["▁", "▃", "▅", "█"];
 
-/// Day on which the next measurement is published.
+/// Returns the day on which the next measurement is published.
 pub fn next_day(economy: &[Published], terms: &ToolLimits) -> u32 {
     let measured = economy.last().map_or(1, |last| last.day + terms.economy_every_days);
     measured + terms.economy_lag_days
 }
 
-/// Data of the pane.
 pub struct EconomyView<'a> {
     /// Published measurements, oldest first.
     pub economy: &'a [Published],
@@ -38,7 +37,7 @@ pub struct EconomyView<'a> {
 }
 
 impl<'a> EconomyView<'a> {
-    /// The selected measurement; by default the last one.
+    /// Returns the selected measurement; by default the last one.
     pub fn selected(&self) -> Option<&'a Published> {
         self.point.and_then(|at| self.economy.get(at)).or(self.economy.last())
     }
@@ -123,7 +122,6 @@ impl Pane<Market> for EconomyPane {
     }
 }
 
-/// Shows the text of a measurement.
 fn read(point: &Published) -> Effect {
     Effect::ShowText(format!("PMI of day {} · {}", point.day, point.words), point.text.clone())
 }
@@ -195,7 +193,7 @@ fn count_at(news: &[RivalNews], holds: impl Fn(u32) -> bool) -> usize {
     news.iter().filter(|item| item.rival.is_some() && holds(item.post.day)).count()
 }
 
-/// Area of the curve, without the axes that the chart has drawn.
+/// Returns the area of the curve, without the axes that the chart has drawn.
 fn plot_of(canvas: &Canvas<'_>, area: Rect) -> Option<Rect> {
     let area = area.intersection(canvas.area());
     let below = area.bottom().checked_sub(2).filter(|_| area.height >= 4)?;

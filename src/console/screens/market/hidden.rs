@@ -8,7 +8,7 @@ use novamind_tui::theme::Role;
 use novamind_base::notation::grouped;
 use novamind_insight::{HiddenValues, NextRivalMove};
 
-/// Lines on competitors: quality that they have not copied yet, and their next move.
+/// Returns the lines on competitors: quality that they have not copied yet, and their next move.
 pub fn of_rivals(hidden: &HiddenValues) -> Vec<String> {
     let own: Vec<String> =
         hidden.own_banks.iter().map(|(group, bank)| format!("{group} {}", grouped(*bank, 4))).collect();
@@ -34,7 +34,7 @@ fn next_move(next: Option<&NextRivalMove>) -> String {
     }
 }
 
-/// Lines on the economy and drift.
+/// Returns the lines on the economy and drift.
 pub fn of_economy(hidden: &HiddenValues) -> Vec<String> {
     let drift = match hidden.next_drift {
         Some(day) => format!("next drift on day {day}"),

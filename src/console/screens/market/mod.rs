@@ -68,14 +68,12 @@ pub struct Market {
     table: Table,
     attempts: Table,
     news: Vec<RivalNews>,
-    /// Source of the news.
     posts: Posts,
     headlines: Table,
     /// Index of the selected measurement of the economy; `None` for the last one.
     point: Option<usize>,
     /// Chosen level of the next study.
     target: Option<u8>,
-    /// First visible line of the report.
     from: usize,
     /// Check of the tool call before the user confirms it.
     asking: Pending<CallCheck>,
@@ -93,7 +91,6 @@ impl Market {
         self.turn();
     }
 
-    /// Reports the result of a tool call.
     fn answered(&mut self, answer: &Answer, company: &Company) -> Vec<Effect> {
         match answer {
             Answer::ResearchMarket(DiscoveryAttempt::Found { discovered_group_id: group }) => {
@@ -180,7 +177,7 @@ impl Market {
         }
     }
 
-    /// Confirmation of a tool call that costs money.
+    /// Returns the confirmation of a tool call that costs money.
     fn ask(&self, tool: ToolId, arguments: Value, preview: &Preview, company: &Company) -> Effect {
         let rest = company.seen.cash - preview.cost_now;
         let what = match tool {
@@ -353,7 +350,7 @@ fn walk(table: &mut Table, action: Action, look: &Look<'_>) {
     table.act(action, look.page);
 }
 
-/// The figure of a study value of a group.
+/// Returns the figure of a study value of a group.
 fn knowledge_of(group: Group, company: &Company, term: &'static str, what: &str) -> Option<Figure> {
     let what = if level_of(company, group) == 0 { "facts about" } else { what };
     Some(Figure {

@@ -72,12 +72,12 @@ impl MarketFacts {
         }
     }
 
-    /// Dollars spent on all attempts.
+    /// Returns the dollars spent on all attempts.
     pub fn spent(&self) -> f64 {
         self.attempts.iter().map(|attempt| attempt.cost).sum()
     }
 
-    /// Number of attempts that found a group.
+    /// Returns the number of attempts that found a group.
     pub fn found(&self) -> usize {
         self.attempts.iter().filter(|attempt| attempt.group.is_some()).count()
     }
@@ -106,27 +106,27 @@ fn published(row: &[Cell]) -> Published {
     }
 }
 
-/// The running study of a group.
+/// Returns the running study of a group.
 pub fn study_of(company: &Company, group: Group) -> Option<&RunningStudy> {
     company.studies.iter().find(|study| study.group == group)
 }
 
-/// Study level of a known group, from its insight report.
+/// Returns the study level of a known group, from its insight report.
 pub fn level_of(company: &Company, group: Group) -> u8 {
     company.insights.get(&group).map_or(0, |insights| insights.info_level)
 }
 
-/// Name of a known group.
+/// Returns the name of a known group.
 pub fn name_of(company: &Company, group: Group) -> &str {
     company.insights.get(&group).map_or("", |insights| &insights.group_name)
 }
 
-/// Number of groups that have not been found, as in `get_market_overview`.
+/// Returns the number of groups that have not been found, as in `get_market_overview`.
 pub fn undiscovered(company: &Company) -> usize {
     company.market.undiscovered_count
 }
 
-/// Level of the next study: the chosen one if it is allowed, otherwise the next level.
+/// Returns the level of the next study: the chosen one if it is allowed, otherwise the next level.
 pub fn target_of(company: &Company, group: Group, chosen: Option<u8>) -> u8 {
     let (least, most) = company.terms.targets;
     let now = level_of(company, group);

@@ -15,15 +15,13 @@ use novamind_tui::widgets::{Cell, Column, Table};
 use novamind_worker::company::Company;
 use novamind_worker::posts::{PostKind, Post};
 
-/// A news item.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RivalNews {
     pub post: Arc<Post>,
-    /// Competitor that it names.
     pub rival: Option<String>,
 }
 
-/// News of the press, newest first.
+/// Returns the news of the press, newest first.
 pub fn of(company: &Company) -> Vec<RivalNews> {
     let press = company.posts.iter().filter(|post| post.kind == PostKind::Press);
     let item = |post: &Arc<Post>| {

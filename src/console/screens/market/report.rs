@@ -36,7 +36,7 @@ impl ReportLine {
         ReportLine { words, figures, role: Role::Text }
     }
 
-    /// A line with the true value of the estimate above.
+    /// Returns a line with the true value of the estimate above.
     fn of_truth(figures: String) -> ReportLine {
         ReportLine { words: "  x-ray: true".to_owned(), figures, role: Role::Changed }
     }
@@ -66,7 +66,7 @@ const USAGE: &str = "usage";
 const BUDGET: &str = "budget";
 const MARKET: &str = "market cap";
 
-/// The true value on the shown day, if the x-ray is open.
+/// Returns the true value on the shown day, if the x-ray is open.
 fn truth_of(words: &str, group: Group, company: &Company) -> Option<String> {
     let own = &company.hidden.as_ref()?.groups[group];
     Some(match words {
@@ -95,7 +95,7 @@ fn share(value: f64) -> String {
     percent(value, 1)
 }
 
-/// Lines of the report of a known group.
+/// Returns the lines of the report of a known group.
 pub fn lines(company: &Company, group: Group) -> Vec<ReportLine> {
     let Some(insights) = company.insights.get(&group) else { return Vec::new() };
     let noise = company.terms.level(level_of(company, group)).map_or(0.0, |level| level.noise);
@@ -150,12 +150,12 @@ fn influence(lines: &mut Vec<ReportLine>, influence: &Influence, noise: f64, wri
     }
 }
 
-/// Day and age of a group's estimates.
+/// Returns the day and age of a group's estimates.
 pub fn studied(company: &Company, group: Group) -> String {
     company.fit(group).map_or(String::new(), Fit::studied)
 }
 
-/// Cost and result of the next study, or the running study.
+/// Returns the cost and result of the next study, or the running study.
 fn study_words(company: &Company, group: Group, chosen: Option<u8>) -> String {
     if let Some(study) = study_of(company, group) {
         return format!("study to level {} due on day {}", study.target, study.due_day);

@@ -103,14 +103,14 @@ fn columns_in(row: Rect) -> usize {
     if row.width >= NARROW.1 { COLUMNS.len() } else { NARROW.0 }
 }
 
-/// The area of a row right of the columns.
+/// Returns the area of a row right of the columns.
 fn rest_of(row: Rect) -> Rect {
     let shown = COLUMNS.iter().take(columns_in(row));
     let used = shown.map(|(_, width, _)| width + 1).sum::<u16>() + 2;
     Rect { x: row.x + used, width: row.width.saturating_sub(used + 1), ..row }
 }
 
-/// At most `most` of the values, evenly spaced, including the last one.
+/// Returns at most `most` of the values, evenly spaced, including the last one.
 fn thinned(values: &[f64], most: usize) -> Vec<f64> {
     if values.len() <= most || most == 0 {
         return values.to_vec();

@@ -25,9 +25,7 @@ pub(super) struct RunForm {
     days: Field,
     cash: Field,
     participant: Field,
-    /// Index of the selected row.
     pub(super) at: usize,
-    /// Why the run could not be started.
     pub(super) refused: Option<String>,
 }
 
@@ -42,9 +40,7 @@ pub(super) const ROWS: [(&str, &str); 7] = [
     ("Start", "Start the run (enter)"),
 ];
 
-/// Column of the values.
 const VALUES: u16 = 17;
-/// Width of an input field.
 const FIELD: u16 = 18;
 
 impl RunForm {
@@ -77,7 +73,7 @@ impl RunForm {
         self.terms = scenario.and_then(|scenario| configuration.terms(&scenario, own)).ok();
     }
 
-    /// Whether the selected row accepts text.
+    /// Returns whether the selected row accepts text.
     pub(super) fn is_typing(&self) -> bool {
         (2..=5).contains(&self.at)
     }
@@ -135,7 +131,6 @@ impl RunForm {
         }
     }
 
-    /// The error in a row.
     fn problem(&self, row: usize) -> Option<&'static str> {
         let whole = |field: &Field, least: f64| {
             let fits = |number: f64| number >= least && number.fract() == 0.0 && number < 9e15;
@@ -253,12 +248,12 @@ fn whole(days: u32) -> String {
     novamind_base::notation::grouped(f64::from(days), 0)
 }
 
-/// Placeholder of an empty field.
+/// Returns the placeholder of an empty field.
 fn standard(value: Option<String>) -> String {
     value.map_or("scenario default".to_owned(), |value| format!("scenario default: {value}"))
 }
 
-/// Permissions of a mode.
+/// Returns the permissions of a mode.
 fn allows(mode: Mode) -> &'static str {
     match mode {
         Mode::Baseline => {

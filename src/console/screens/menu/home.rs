@@ -10,7 +10,6 @@ use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 
-/// Choices of the start page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum HomeEntry {
     Continue,
@@ -29,7 +28,7 @@ pub(super) enum HomeEntry {
 const WIDE: u16 = 76;
 
 impl Menu {
-    /// Choices of the page; empty while runs are listed, because they determine the first choice.
+    /// Returns the choices of the page; empty while runs are listed, because they determine the first choice.
     pub(super) fn choices(&self) -> Vec<(HomeEntry, &'static str, String)> {
         let mut choices = Vec::new();
         if self.runs.is_none() {
@@ -133,7 +132,6 @@ impl Menu {
     }
 }
 
-/// Draws a run with its figures and cash curve.
 pub(super) fn draw_run(
     canvas: &mut Canvas<'_>,
     area: Rect,

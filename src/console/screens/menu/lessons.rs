@@ -16,10 +16,8 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_row;
 use novamind_worker::request::Request;
 
-/// Minimum width for the learning goal next to the list.
 const WIDE: u16 = 76;
 
-/// The available lessons.
 #[derive(Default)]
 pub(super) struct LessonList {
     lessons: Vec<ListedLesson>,
@@ -44,7 +42,6 @@ impl LessonList {
         self.lessons.len()
     }
 
-    /// Starts a lesson.
     pub(super) fn begin(&self, selected: usize) -> Vec<Effect> {
         match self.lessons.get(selected).map(|own| &own.lesson) {
             Some(Ok(lesson)) => {
@@ -93,7 +90,6 @@ impl LessonList {
     }
 }
 
-/// Draws the learning goal of a lesson.
 fn draw_lesson(canvas: &mut Canvas<'_>, area: Rect, own: &ListedLesson) {
     if area.height < 3 {
         return;

@@ -44,7 +44,6 @@ use runs::Asked;
 /// Window height below which the page has no blank row above it.
 const LOW: u16 = 26;
 
-/// Rows of a page when scrolling.
 const PAGE: u16 = 10;
 
 /// Previews of runs by name; `None` while a preview is read.
@@ -61,17 +60,13 @@ pub struct Menu {
     /// Runs marked for comparison, in order of marking.
     marked: Vec<String>,
     previews: Previews,
-    /// Runs whose previews are being read.
     reading: Vec<Pending<PreviewQuestion>>,
-    /// Pending confirmation.
     asked: Option<Asked>,
     /// Actions received before the runs were listed. The choices of the start page depend on the runs.
     early: Vec<Action>,
     /// Lessons, read when their page was opened.
     lessons: LessonList,
-    /// The path form.
     path: PathForm,
-    /// The opened class.
     class: Option<Box<ClassPage>>,
     configuration: Configuration,
 }
@@ -189,7 +184,7 @@ impl Menu {
         self.list().iter().find(|run| run.ended.is_none() && run.problem.is_none())
     }
 
-    /// The unfinished run of the tour, if there is one.
+    /// Returns the unfinished run of the tour, if there is one.
     pub fn practice(&self) -> Option<&str> {
         let begun = |run: &&RunSummary| {
             run.scenario == tour::scenario()
@@ -200,7 +195,7 @@ impl Menu {
         self.list().iter().find(begun).map(|run| run.id.as_str())
     }
 
-    /// Last index on list pages.
+    /// Returns the last index on list pages.
     fn last(&self) -> usize {
         let rows = match self.page {
             MenuPage::Home => self.choices().len(),
@@ -212,7 +207,7 @@ impl Menu {
         rows.saturating_sub(1)
     }
 
-    /// Scopes of the page.
+    /// Returns the scopes of the page.
     pub fn scopes(&self) -> Vec<Scope> {
         match self.page {
             _ if matches!(self.asked, Some(Asked::Agree(..))) => vec![Scope::Visit, Scope::List],
@@ -226,7 +221,7 @@ impl Menu {
         }
     }
 
-    /// Footer actions.
+    /// Returns the footer actions.
     pub fn hints(&self) -> Vec<Action> {
         match self.page {
             _ if matches!(self.asked, Some(Asked::Agree(..))) => vec![Action::Agree, Action::Decline],

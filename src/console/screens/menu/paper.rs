@@ -14,7 +14,6 @@ use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_row;
 
-/// A row of the table.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Ranked {
     name: String,
@@ -23,7 +22,7 @@ pub(super) struct Ranked {
     own: bool,
 }
 
-/// All results, best first.
+/// Returns all results, best first.
 pub(super) fn ranked(runs: &[RunSummary]) -> Vec<Ranked> {
     let paper = published();
     let baseline = Ranked {
@@ -51,7 +50,7 @@ pub(super) fn ranked(runs: &[RunSummary]) -> Vec<Ranked> {
     results
 }
 
-/// Reasons why a run is not ranked; `None` if the run has no score.
+/// Returns the reasons why a run is not ranked; `None` if the run has no score.
 fn obstacles(run: &RunSummary) -> Option<Vec<Obstacle>> {
     let has_score = matches!(run.ended, Some(Ended::Horizon | Ended::Bankruptcy | Ended::Lesson));
     (has_score && run.problem.is_none()).then(|| RunTerms::of_summary(run).obstacles())
@@ -89,7 +88,7 @@ impl Menu {
     }
 }
 
-/// Source of the published results.
+/// Returns the source of the published results.
 fn source() -> String {
     let bound = compact(published().estimated_upper_bound);
     format!("{}, best cash of three runs each. Estimated upper bound: ${bound}.", published_terms())

@@ -13,15 +13,11 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;
 use novamind_worker::request::Request;
 
-/// Maximum width for readable text.
 const WIDEST: u16 = 100;
 
-/// Kind of path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum PathWanted {
-    /// The folder of a class.
     Class,
-    /// A student's handout.
     Handout,
 }
 
@@ -57,7 +53,6 @@ impl PathWanted {
 pub(super) struct PathForm {
     wanted: PathWanted,
     field: Field,
-    /// Why the typed path could not be opened.
     pub(super) refused: Option<String>,
 }
 
@@ -76,7 +71,6 @@ impl PathForm {
         self.field.insert(text.trim());
     }
 
-    /// Opens the typed path.
     pub(super) fn enter(&self) -> Vec<Effect> {
         // Terminals quote dropped files.
         let typed = self.field.text().trim().trim_matches(['\'', '"']);

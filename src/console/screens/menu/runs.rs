@@ -35,10 +35,8 @@ pub(super) enum Asked {
 /// State of a run that a server is playing. Opening it asks whether to watch.
 const BY_PROGRAM: &str = "played by a program";
 
-/// Maximum number of compared runs.
 pub(super) const MOST_COMPARED: usize = 6;
 
-/// Columns of the list.
 pub(super) fn columns() -> Vec<Column> {
     vec![
         Column::words("run").at_most(10),
@@ -88,7 +86,6 @@ impl Menu {
         self.table.selected().and_then(|at| self.list().get(at))
     }
 
-    /// Runs an action of the list of runs.
     pub(super) fn act_on_runs(&mut self, action: Action) -> Vec<Effect> {
         if self.table.act(action, super::PAGE) {
             return self.read_chosen();
@@ -307,7 +304,7 @@ impl Menu {
     }
 }
 
-/// Progress of a run.
+/// Returns the progress of a run.
 pub(super) fn state(run: &RunSummary) -> String {
     match run.ended {
         _ if run.problem.is_some() => "cannot be read".to_owned(),
@@ -319,12 +316,10 @@ pub(super) fn state(run: &RunSummary) -> String {
     }
 }
 
-/// A time, to the minute.
 fn minute(at: &str) -> String {
     at.get(..16).unwrap_or("").replace('T', " ")
 }
 
-/// Figures of a run.
 pub(super) fn facts(
     run: &RunSummary,
     preview: Option<&Result<RunPreview, String>>,
@@ -392,7 +387,7 @@ pub(super) fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, previews: &[(usiz
     chart(canvas, area, &lines, &x, &Side { unit: Unit::Dollars, holds: zero });
 }
 
-/// A preview that has arrived.
+/// Returns a preview that has arrived.
 pub(super) fn known<'a>(previews: &'a Previews, id: &str) -> Option<&'a RunPreview> {
     previews.get(id)?.as_ref()?.as_ref().ok()
 }

@@ -196,7 +196,7 @@ pub static METRICS: [Metric; 22] = [
     metric("enterprises lost", "churn", |week| f64::from(week.companies_lost), whole, false, RowsSource::None),
 ];
 
-/// Columns of the table; narrow windows drop the last ones first.
+/// Returns the columns of the table; narrow windows drop the last ones first.
 pub fn columns() -> Vec<Column> {
     let numbers = ["this week", "change"].map(Column::numbers);
     let last = ["last week", "4-wk mean"].map(Column::numbers);
@@ -204,7 +204,7 @@ pub fn columns() -> Vec<Column> {
     name.into_iter().chain(numbers).chain([Column::words("trend")]).chain(last).collect()
 }
 
-/// Weeks that a column covers, as distances from the last week, farthest first.
+/// Returns the weeks that a column covers, as distances from the last week, farthest first.
 fn weeks_of(column: usize) -> (u32, u32) {
     match column {
         2 => (1, 0),
@@ -215,7 +215,7 @@ fn weeks_of(column: usize) -> (u32, u32) {
     }
 }
 
-/// The row of a figure.
+/// Returns the row of a figure.
 pub fn row_of(metric: &Metric, company: &Company) -> Vec<Cell> {
     let trend = company.trend(12, metric.read);
     let now = trend.last().copied();
@@ -252,7 +252,7 @@ pub fn row_of(metric: &Metric, company: &Company) -> Vec<Cell> {
     ]
 }
 
-/// The figure in a column, with a query for its rows.
+/// Returns the figure in a column, with a query for its rows.
 pub fn figure(metric: &Metric, column: usize, company: &Company) -> Figure {
     let week = company.seen.week;
     let (from, to) = weeks_of(column);
@@ -267,7 +267,7 @@ pub fn figure(metric: &Metric, column: usize, company: &Company) -> Figure {
     .of_week(quantity, to)
 }
 
-/// Query for the rows of some weeks; `None` if only current rows exist and the weeks are past.
+/// Returns the query for the rows of some weeks; `None` if only current rows exist and the weeks are past.
 fn statement(source: &RowsSource, weeks: (u32, u32), now: bool) -> Option<String> {
     let (from, to) = ((7 * weeks.0).saturating_sub(6), 7 * weeks.1);
     let between = |day: &str| format!("{day} BETWEEN {from} AND {to}");

@@ -47,7 +47,6 @@ pub enum OverviewPane {
 #[derive(Default)]
 pub struct Overview {
     focus: OverviewPane,
-    /// Index of the selected item that needs action.
     need: usize,
     week: Table,
     quality: Table,
@@ -56,12 +55,10 @@ pub struct Overview {
     notices: Vec<NewsItem>,
     research: Vec<NewsItem>,
     news: Vec<NewsItem>,
-    /// Index of the selected news item.
     item: usize,
 }
 
 impl Overview {
-    /// Collects the news.
     fn gather(&mut self, company: &Company) {
         self.news = self.research.iter().chain(&self.notices).cloned().collect();
         self.news.extend(news::of_posts(company));

@@ -72,14 +72,14 @@ fn rows_of(company: &Company) -> Vec<LinkedRow> {
     company.needs.iter().map(|need| LinkedRow::to(screen_of(need), need.in_words(), need.urgent)).collect()
 }
 
-/// Height of the pane with its border, limited to `most`.
+/// Returns the height of the pane with its border, limited to `most`.
 pub fn height(company: &Company, width: u16, most: u16) -> u16 {
     let room = width.saturating_sub(2);
     let lines: usize = rows_of(company).iter().map(|row| row.lines(room).len()).sum();
     (lines.max(1) as u16 + 2).min(most.max(4))
 }
 
-/// The screen for an item.
+/// Returns the screen for an item.
 pub fn screen_of(need: &Need) -> ScreenId {
     match &need.place {
         Place::Call(..) => ScreenId::Tools,
@@ -99,7 +99,7 @@ pub fn way_of(need: &Need) -> Effect {
     }
 }
 
-/// The figure of an item, with a query for its rows.
+/// Returns the figure of an item, with a query for its rows.
 pub fn figure_of(need: &Need, day: u32) -> Figure {
     let from = day.saturating_sub(6);
     let days = |columns: &str| {
@@ -158,7 +158,7 @@ pub fn figure_of(need: &Need, day: u32) -> Figure {
     Figure { title: need.text.clone(), term, sql, why: None }.of_week(quantity_of(need), day.div_ceil(7))
 }
 
-/// The weekly figure of an item.
+/// Returns the weekly figure of an item.
 fn quantity_of(need: &Need) -> Option<WeekQuantity> {
     match need.problem {
         Problem::Runway => WeekQuantity::of_company(WeekFigure::CashChange),

@@ -58,19 +58,13 @@ impl Pane<Overview> for NewsPane {
 /// Kind of a news item, in display order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum NewsKind {
-    /// Completed R&D project.
     Research,
-    /// Completed study or newly found group.
     Study,
-    /// Published index of the economy.
     Economy,
-    /// Posts about the company.
     Posts,
-    /// News of the press.
     Press,
 }
 
-/// A news item.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewsItem {
     pub kind: NewsKind,
@@ -78,7 +72,7 @@ pub struct NewsItem {
 }
 
 impl NewsItem {
-    /// The screen with the details.
+    /// Returns the screen with the details.
     pub fn screen(&self) -> ScreenId {
         match self.kind {
             NewsKind::Research => ScreenId::Product,
@@ -92,7 +86,7 @@ impl NewsItem {
         Effect::Show(self.screen())
     }
 
-    /// The figure of the item, with a query for its rows.
+    /// Returns the figure of the item, with a query for its rows.
     pub fn figure(&self, day: u32) -> Figure {
         let (term, sql) = match self.kind {
             NewsKind::Research => {
@@ -114,7 +108,7 @@ impl NewsItem {
     }
 }
 
-/// News from the notices of a week, newest first.
+/// Returns the news from the notices of a week, newest first.
 pub fn of_notices(rows: &Rows) -> Vec<NewsItem> {
     let mut items = Vec::new();
     for row in &rows.rows {
@@ -129,7 +123,7 @@ pub fn of_notices(rows: &Rows) -> Vec<NewsItem> {
     items
 }
 
-/// R&D projects completed in the last week, with the quality that they add.
+/// Returns the R&D projects completed in the last week, with the quality that they add.
 pub fn of_research(projects: &[Project], day: u32) -> Vec<NewsItem> {
     let ended = |project: &&Project| project.done && project.expected + 7 > day && project.expected <= day;
     let words = |project: &Project| NewsItem {

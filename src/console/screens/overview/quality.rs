@@ -76,7 +76,6 @@ impl Pane<Overview> for QualityPane {
     }
 }
 
-/// Columns and rows of the table.
 pub fn table_of(company: &Company) -> (Vec<Column>, Vec<Vec<Cell>>) {
     let tier = |plan: &Plan| number(company.setting(ToolId::SetModelTiers, plan.id()));
     let plans = Plan::ALL.iter().map(|plan| Column::numbers(format!("{plan} tier {}", tier(plan))));

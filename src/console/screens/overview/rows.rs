@@ -10,7 +10,6 @@ use novamind_tui::canvas::{Align, Canvas, Click, fit};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 
-/// Moves the selection.
 pub fn walk(selected: &mut usize, rows: usize, action: Action) {
     let last = rows.saturating_sub(1);
     *selected = match action {
@@ -34,7 +33,7 @@ impl LinkedRow {
         LinkedRow { text, urgent, way: format!("→ {}", screen.action().entry().title) }
     }
 
-    /// The wrapped text, with room for the name of the screen in the first line.
+    /// Returns the wrapped text, with room for the name of the screen in the first line.
     pub fn lines(&self, width: u16) -> Vec<String> {
         let room = (width as usize).saturating_sub(self.way.width() + 4);
         wrapped(&self.text, room.max(12))

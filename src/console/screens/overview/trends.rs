@@ -13,7 +13,6 @@ use novamind_worker::company::Company;
 
 /// Minimum height of a small chart with its border.
 const LEAST: u16 = 8;
-/// Maximum height.
 const MOST: u16 = 16;
 
 /// Figures with charts and their titles, most informative first.
@@ -46,7 +45,7 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
     }
 }
 
-/// Height that the charts take from the free rows.
+/// Returns the height that the charts take from the free rows.
 pub fn height(room: u16) -> u16 {
     if room < LEAST { 0 } else { room.min(3 * MOST) }
 }

@@ -57,7 +57,7 @@ impl Pane<Overview> for WeekPane {
     }
 }
 
-/// The screen with details of a figure, by its term.
+/// Returns the screen with details of a figure, by its term.
 fn screen_of(term: &str) -> ScreenId {
     match term {
         "cash" | "payments" | "running-costs" => ScreenId::Cash,

@@ -20,12 +20,12 @@ use novamind_tui::widgets::table::first_row;
 use novamind_tui::widgets::{Axis, Line, Side, Unit, chart};
 use novamind_worker::company::Company;
 
-/// The tier of the last day, and the tier that is set.
+/// Returns the tier of the last day, and the tier that is set.
 pub fn tiers(company: &Company, days: &[Day]) -> (Option<u32>, u32) {
     (days.last().map(|day| day.tier), company.setting(ToolId::SetCapacityTier, "tier") as u32)
 }
 
-/// One line on capacity, longest wording first.
+/// Returns one line on capacity, longest wording first.
 fn summary(company: &Company, rungs: &[Rung], days: &[Day]) -> Vec<String> {
     let (_, set) = tiers(company, days);
     let Some(rung) = rungs.iter().find(|rung| rung.tier == set) else { return Vec::new() };
@@ -45,7 +45,7 @@ fn summary(company: &Company, rungs: &[Rung], days: &[Day]) -> Vec<String> {
     ]
 }
 
-/// Utilization of a tier in percent, capped at ten times its capacity.
+/// Returns the utilization of a tier in percent, capped at ten times its capacity.
 fn share(units: f64, of: f64) -> String {
     match of {
         of if of <= 0.0 => "–".to_owned(),
@@ -143,7 +143,6 @@ fn draw_ladder(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: 
     }
 }
 
-/// Draws usage and capacity, with nearby tiers as dotted lines.
 fn draw_history(canvas: &mut Canvas<'_>, area: Rect, rungs: &[Rung], days: &[Day]) {
     let most = days.iter().map(|day| day.usage.max(day.capacity)).fold(0.0, f64::max);
     let (Some(first), Some(last)) = (days.first(), days.last()) else {

@@ -23,7 +23,6 @@ use novamind_worker::company::Company;
 /// Bar glyphs by age, newest first; older issues are denser.
 const SHADES: [char; 4] = ['░', '▒', '▓', '█'];
 
-/// Width of the figures next to the bars.
 const FIGURES: u16 = 45;
 
 /// Summarizes open issues; empty before they are read.
@@ -143,7 +142,7 @@ fn cells(ages: &Ages) -> [String; 5] {
     })
 }
 
-/// The ages of a group as one bar, relative to the group with the most issues.
+/// Returns the ages of a group as one bar, relative to the group with the most issues.
 fn stacked(ages: &Ages, whole: f64, width: usize) -> String {
     let (mut text, mut sum, mut drawn) = (String::new(), 0.0, 0);
     for (count, shade) in ages.iter().zip(SHADES) {

@@ -83,7 +83,6 @@ pub struct Product {
     days: Vec<Day>,
     /// Open issues by group; `None` before they are read.
     issues: Option<BTreeMap<String, Ages>>,
-    /// Plan of the selected figure.
     column: usize,
     projects: Vec<Project>,
     offers: Vec<ProjectOffer>,
@@ -101,7 +100,6 @@ impl Product {
         &mut self.places[pane as usize]
     }
 
-    /// Plan of the selected column.
     fn plan(&self) -> Plan {
         Plan::ALL[self.column.min(Plan::ALL.len() - 1)]
     }
@@ -177,7 +175,7 @@ impl Paned for Product {
 }
 
 impl Product {
-    /// All panes in two columns.
+    /// Draws all panes in two columns.
     fn arrange_all(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         use ProductPane::{Capacity, Issues, Plans, Quality, Research, Service};
         let [left, right] = Layout::horizontal([Constraint::Percentage(48), Constraint::Min(0)]).areas(area);
@@ -199,7 +197,7 @@ impl Product {
         }
     }
 
-    /// One line per pane, with the focused pane below.
+    /// Draws one line per pane, with the focused pane below.
     fn arrange_one(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let panes = ProductPane::VARIANTS;
         let lines = (panes.len() as u16).min(area.height / 3);

@@ -26,18 +26,18 @@ pub struct PlanFacts {
 }
 
 impl PlanFacts {
-    /// Compute cost, $ per month and seat.
+    /// Returns the compute cost, $ per month and seat.
     pub fn compute(&self) -> Option<f64> {
         self.sold.compute(self.unit_cost)
     }
 
-    /// Share of the revenue that remains after compute.
+    /// Returns the share of the revenue that remains after compute.
     pub fn margin(&self) -> Option<f64> {
         self.sold.margin(self.unit_cost)
     }
 }
 
-/// The plans with their settings and sales.
+/// Returns the plans with their settings and sales.
 pub fn plans(sales: &Sales, company: &Company) -> [PlanFacts; 3] {
     Plan::ALL.map(|plan| {
         let tier = company.setting(ToolId::SetModelTiers, plan.id()) as u32;
@@ -63,7 +63,7 @@ pub struct Rung {
     pub cost: f64,
 }
 
-/// All capacity tiers, smallest first.
+/// Returns all capacity tiers, smallest first.
 pub fn ladder(company: &Company) -> Vec<Rung> {
     let rung = |(tier, facts): (&u8, &CapacityTierFacts)| Rung {
         tier: u32::from(*tier),
@@ -95,13 +95,13 @@ pub struct Day {
 }
 
 impl Day {
-    /// Usage divided by capacity.
+    /// Returns the usage divided by capacity.
     pub fn utilisation(&self) -> f64 {
         if self.capacity > 0.0 { self.usage / self.capacity } else { 0.0 }
     }
 }
 
-/// The service by day.
+/// Returns the service by day.
 pub fn service(rows: &Rows) -> Vec<Day> {
     let day = |row: &Vec<novamind_database::Cell>| Day {
         day: number_at(row, 0) as u32,
@@ -115,7 +115,7 @@ pub fn service(rows: &Rows) -> Vec<Day> {
     rows.rows.iter().map(day).collect()
 }
 
-/// Mean and peak usage of the last seven days; `None` before the first day.
+/// Returns the mean and peak usage of the last seven days; `None` before the first day.
 pub fn last_week(days: &[Day]) -> Option<(f64, f64)> {
     let last = &days[days.len().saturating_sub(7)..];
     let peak = last.iter().map(|day| day.usage).fold(0.0, f64::max);
@@ -125,7 +125,7 @@ pub fn last_week(days: &[Day]) -> Option<(f64, f64)> {
 /// Open issues by age in days: up to 3, 4 to 7, 8 to 14, 15 or more.
 pub type Ages = [f64; 4];
 
-/// Open issues by group.
+/// Returns the open issues by group.
 pub fn issues(rows: &Rows) -> BTreeMap<String, Ages> {
     let ages = |row: &Vec<novamind_database::Cell>| std::array::from_fn(|at| number_at(row, at + 1));
     rows.rows.iter().map(|row| (text_at(row, 0).to_owned(), ages(row))).collect()
@@ -148,7 +148,7 @@ pub struct Project {
     pub boost: f64,
 }
 
-/// R&D projects, newest first.
+/// Returns the R&D projects, newest first.
 pub fn projects(rows: &Rows) -> Vec<Project> {
     let project = |row: &Vec<novamind_database::Cell>| Project {
         id: text_at(row, 0).to_owned(),
@@ -176,7 +176,7 @@ pub struct ProjectOffer {
     pub counts: (usize, usize),
 }
 
-/// The R&D projects that can be started.
+/// Returns the R&D projects that can be started.
 pub fn offers(company: &Company) -> Vec<ProjectOffer> {
     let offer = |(tier, means): (&ResearchTierFacts, &ResearchMeans)| ProjectOffer {
         tier: u32::from(tier.tier),
@@ -188,7 +188,7 @@ pub fn offers(company: &Company) -> Vec<ProjectOffer> {
     company.projects.tiers.iter().zip(&company.research_means).map(offer).collect()
 }
 
-/// Dollars per week of a ledger category, from the first week.
+/// Returns the dollars per week of a ledger category, from the first week.
 pub fn spent(weeks: &[WeekFigures], category: Category) -> Vec<f64> {
     weeks.iter().map(|week| -week.booked.of(category)).collect()
 }

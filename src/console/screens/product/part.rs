@@ -11,24 +11,23 @@ use novamind_tools::ToolId;
 use novamind_tui::canvas::Canvas;
 use novamind_worker::company::Company;
 
-/// A pane of the product screen.
 pub trait ProductPart: Pane<Product> {
     fn name(&self) -> ProductPane;
 
-    /// Number of selectable rows.
+    /// Returns the number of selectable rows.
     fn rows(&self, _: &Product, _: &Company) -> usize {
         1
     }
 
-    /// A one-line summary in at most `width` columns.
+    /// Returns a one-line summary in at most `width` columns.
     fn summary(&self, product: &Product, company: &Company, width: usize) -> String;
 
-    /// Text at the right of the border.
+    /// Returns the text at the right of the border.
     fn note(&self, product: &Product, company: &Company, width: usize) -> String {
         self.summary(product, company, width)
     }
 
-    /// Name of the destination that the selected row opens.
+    /// Returns the name of the destination that the selected row opens.
     fn destination(&self, product: &Product) -> &'static str;
 
     /// Opens the selected object: its cell, or its form with a value filled in.

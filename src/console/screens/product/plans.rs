@@ -133,7 +133,7 @@ static FIGURES: [PlanFigure; 11] = [
     ("billed/month", |plan| format!("${}", compact(plan.sold.monthly))),
 ];
 
-/// The tool that sets the value of a row.
+/// Returns the tool that sets the value of a row.
 fn tool_of(row: usize) -> ToolId {
     match row {
         0 | 3 | 9 => ToolId::SetModelTiers,
@@ -142,7 +142,7 @@ fn tool_of(row: usize) -> ToolId {
     }
 }
 
-/// The figure of a row and plan, with a query for its rows.
+/// Returns the figure of a row and plan, with a query for its rows.
 fn figure_of(row: usize, plan: Plan) -> Figure {
     let subscribers = || {
         Some(format!(

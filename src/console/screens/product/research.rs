@@ -17,14 +17,12 @@ use novamind_tui::widgets::spark;
 use novamind_tui::widgets::table::first_row;
 use novamind_worker::company::Company;
 
-/// Weekly spend on development and operations, in dollars.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Spent {
     pub development: Vec<f64>,
     pub operations: Vec<f64>,
 }
 
-/// One line on R&D.
 fn summary(projects: &[Project], last_day: u32) -> String {
     let running = projects.iter().filter(|project| !project.done);
     let next = running.clone().min_by_key(|project| project.expected);
@@ -109,7 +107,7 @@ fn draw_spent(canvas: &mut Canvas<'_>, area: Rect, spent: &Spent) {
     }
 }
 
-/// Projects as bars over the days from the first start to the last end.
+/// Draws projects as bars over the days from the first start to the last end.
 fn draw_line(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &Company) {
     let (area, projects) = (seat.area, &product.projects);
     let selected =

@@ -63,7 +63,7 @@ fn peak(days: &[f64]) -> f64 {
     days.iter().copied().fold(0.0, f64::max)
 }
 
-/// One line on the service, longest wording first.
+/// Returns one line on the service, longest wording first.
 pub fn summary(days: &[Day]) -> Vec<String> {
     let Some(last) = days.last() else { return vec![NO_DATA.to_owned()] };
     let minutes: f64 = days.iter().rev().take(28).map(|day| day.downtime).sum();

@@ -7,7 +7,7 @@ use std::sync::Arc;
 pub use novamind_worker::posts::{PostKind, Post};
 use novamind_database::{Rows, number_at, text_at};
 
-/// The player's posts from the database.
+/// Returns the player's posts from the database.
 pub fn own_posts(rows: &Rows) -> Vec<Arc<Post>> {
     let own = |row: &Vec<novamind_database::Cell>| {
         let answers = number_at(row, 3) as u32;
@@ -40,7 +40,7 @@ pub struct Filter {
 }
 
 impl Filter {
-    /// Whether a post passes the filter.
+    /// Returns whether a post passes the filter.
     pub fn takes(&self, post: &Post) -> bool {
         let wanted = self.text.to_lowercase();
         self.kind.is_none_or(|kind| kind == post.kind)
@@ -79,7 +79,7 @@ impl Filter {
     }
 }
 
-/// Whether a post belongs to the thread of one of the player's posts.
+/// Returns whether a post belongs to the thread of one of the player's posts.
 fn belongs(post: &Post, (own, answered): (u32, Option<u32>)) -> bool {
     match post.kind {
         PostKind::Own => post.number == own,
@@ -88,7 +88,7 @@ fn belongs(post: &Post, (own, answered): (u32, Option<u32>)) -> bool {
     }
 }
 
-/// All posts, newest first; comments follow the player's post that they answer, oldest first.
+/// Returns all posts, newest first; comments follow the player's post that they answer, oldest first.
 pub fn threads(others: &[Arc<Post>], own: &[Arc<Post>]) -> Vec<Arc<Post>> {
     let days: BTreeMap<u32, u32> = own.iter().map(|post| (post.number, post.day)).collect();
     let place = |post: &Arc<Post>| {
@@ -111,7 +111,7 @@ pub fn threads(others: &[Arc<Post>], own: &[Arc<Post>]) -> Vec<Arc<Post>> {
     all
 }
 
-/// Number of other authors' posts per week, from the first week.
+/// Returns the number of other authors' posts per week, from the first week.
 pub fn by_week(posts: &[Arc<Post>], last: u32, takes: impl Fn(PostKind) -> bool) -> Vec<(f64, f64)> {
     let count = |week: u32| posts.iter().filter(|post| takes(post.kind) && post.week() == week).count();
     (1..=last).map(|week| (f64::from(week), count(week) as f64)).collect()

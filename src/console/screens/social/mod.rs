@@ -64,7 +64,6 @@ pub struct Social {
     table: Table,
     draft: Editor,
     editing: bool,
-    /// Post that the draft answers.
     answers: Option<u32>,
     /// Check of the tool call before the user confirms it.
     sending: Pending<CallCheck>,
@@ -130,13 +129,13 @@ impl Social {
         Effect::ShowText(format!("day {} · {}", post.day, post.head()), parts.join("\n\n"))
     }
 
-    /// The selected post in the table of the player's posts.
+    /// Returns the selected post in the table of the player's posts.
     fn own_post(&self) -> Option<&Post> {
         self.table.selected().and_then(|row| self.own.get(row)).map(Arc::as_ref)
     }
 
-    /// The player's post that heads the thread of a post, which is the post itself, a comment on it, or the
-    /// post it answers.
+    /// Returns the player's post that heads the thread of a post, which is the post itself, a comment on it,
+    /// or the post it answers.
     fn thread_of(&self, post: &Post) -> Option<u32> {
         match post.kind {
             PostKind::Own => Some(post.number),
@@ -213,7 +212,7 @@ impl Social {
         Effect::ConfirmCall { tool: POST, arguments, text }
     }
 
-    /// The unsent post, and the post that it answers.
+    /// Returns the unsent post, and the post that it answers.
     pub fn unsent(&self) -> (String, Option<u32>) {
         (self.draft.text(), self.answers)
     }
@@ -375,7 +374,6 @@ impl Paned for Social {
 }
 
 impl Social {
-    /// Draws the number of posts by week.
     fn draw_weeks(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let last = self.last_week();
         let people = feed::by_week(&self.others, last, |kind| kind == PostKind::Customers);
@@ -392,7 +390,6 @@ impl Social {
     }
 }
 
-/// The figure of a post.
 fn figure_of(post: &Post) -> Figure {
     let number = post.number;
     let (title, term, sql) = match post.kind {

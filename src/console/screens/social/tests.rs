@@ -24,7 +24,7 @@ fn write(screen: &mut Social, company: &Company, text: &str) {
     }
 }
 
-/// A company that posted after its third week, two weeks ago.
+/// Returns a company that posted after its third week, two weeks ago.
 fn talked() -> Session {
     let mut session = played(3);
     let text = "Freelancers: 20% more of your drafts are right at once, measured on 1,200 of them.";

@@ -8,7 +8,6 @@ use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 
-/// A row of the feed: text, role, and the index of its post.
 struct FeedRow {
     text: String,
     role: Role,
@@ -45,7 +44,7 @@ pub fn draw(canvas: &mut Canvas<'_>, seat: Seat, posts: &[&Post], selected: usiz
     }
 }
 
-/// Rows around the selected post; distant posts are not wrapped.
+/// Returns the rows around the selected post; distant posts are not wrapped.
 fn rows_around(posts: &[&Post], selected: usize, width: usize, height: usize) -> Vec<FeedRow> {
     let Some(last) = posts.len().checked_sub(1) else { return Vec::new() };
     let selected = selected.min(last);

@@ -16,7 +16,7 @@ use novamind_tui::widgets::table::first_row;
 /// Marks x-ray tables.
 const XRAY: &str = "x-ray";
 
-/// A table by index; x-ray tables follow the public ones.
+/// Returns a table by index; x-ray tables follow the public ones.
 fn table_at(at: usize) -> &'static Table {
     tables().get(at).unwrap_or_else(|| &hidden_tables()[at - tables().len()])
 }
@@ -44,19 +44,17 @@ impl BrowserRow {
         table_at(self.table)
     }
 
-    /// The column, unless the row is a table.
     pub fn column(self) -> Option<&'static Column> {
         self.column.map(|at| &self.table().columns[at])
     }
 
-    /// Name of the table or column.
     pub fn name(self) -> &'static str {
         self.column().map_or(&self.table().name, |column| &column.name)
     }
 }
 
 impl Browser {
-    /// Visible rows.
+    /// Returns the visible rows.
     fn entries(&self) -> Vec<BrowserRow> {
         let wanted = self.filter.to_lowercase();
         let holds = |name: &str| wanted.is_empty() || name.to_lowercase().contains(&wanted);
@@ -74,12 +72,11 @@ impl Browser {
         entries
     }
 
-    /// The selected row.
     pub fn selected(&self) -> Option<BrowserRow> {
         self.entries().get(self.selected).copied()
     }
 
-    /// Name of the selected table if it is expanded.
+    /// Returns the name of the selected table if it is expanded.
     pub fn opened(&self) -> Option<&'static str> {
         let row = self.selected().filter(|row| self.open.contains(&row.table))?;
         Some(&row.table().name)
@@ -92,17 +89,15 @@ impl Browser {
         again
     }
 
-    /// Whether a filter is set or being typed.
+    /// Returns whether a filter is set or being typed.
     pub fn is_filtered(&self) -> bool {
         self.is_typing() || !self.filter.is_empty()
     }
 
-    /// Whether a filter is being typed.
     pub fn is_typing(&self) -> bool {
         self.typing.is_some()
     }
 
-    /// Edits the filter.
     pub fn edit_filter(&mut self, edit: &mut dyn FnMut(&mut Field)) {
         if let Some(field) = &mut self.typing {
             edit(field);
@@ -111,7 +106,7 @@ impl Browser {
         }
     }
 
-    /// The filter, for the border.
+    /// Returns the filter, for the border.
     pub fn note(&self) -> String {
         if self.filter.is_empty() { String::new() } else { format!("\"{}\"", self.filter) }
     }

@@ -9,7 +9,6 @@ use novamind_database::{table, tables};
 pub struct Candidate {
     /// Text to insert.
     pub word: String,
-    /// Description.
     pub what: String,
 }
 
@@ -18,13 +17,11 @@ pub struct Candidate {
 pub struct Completion {
     /// Suggestions, best first.
     pub candidates: Vec<Candidate>,
-    /// Index of the selected one.
     pub chosen: usize,
     /// Number of typed characters of the word.
     pub typed: usize,
 }
 
-/// Maximum number of suggestions.
 const MOST: usize = 40;
 
 /// A table of a statement with its alias.
@@ -33,7 +30,8 @@ struct NamedTable {
     table: &'static Table,
 }
 
-/// Suggestions at a byte offset. Returns `None` for a word shorter than `least`, unless it follows a point.
+/// Returns the suggestions at a byte offset. Returns `None` for a word shorter than `least`, unless it
+/// follows a point.
 pub fn complete(sql: &str, place: usize, least: usize) -> Option<Completion> {
     let (range, ..) = statement_at(sql, place);
     let start = range.start.min(place);
@@ -80,14 +78,14 @@ fn of_table(table: &Table) -> Candidate {
     Candidate { word: table.name.clone(), what: "table".to_owned() }
 }
 
-/// Columns of the table with a name or alias in the statement, or a name in the database.
+/// Returns the columns of the table with a name or alias in the statement, or a name in the database.
 fn of_source(name: &str, sources: &[NamedTable]) -> Option<Vec<Candidate>> {
     let own = sources.iter().find(|source| source.name.eq_ignore_ascii_case(name)).map(|source| source.table);
     let meant = own.or_else(|| table(name))?;
     Some(meant.columns.iter().map(|column| of_column(meant, column)).collect())
 }
 
-/// Suggestions for a word without a point before it.
+/// Returns the suggestions for a word without a point before it.
 fn of_everything(sql: &str, pieces: &[Token], word_start: usize, sources: &[NamedTable]) -> Vec<Candidate> {
     let said = |token: &&Token| token.kind != LexemeKind::Comment && token.place.end <= word_start;
     let last = pieces.iter().rev().find(said).map(|token| sql[token.place.clone()].to_uppercase());
@@ -116,13 +114,13 @@ fn of_everything(sql: &str, pieces: &[Token], word_start: usize, sources: &[Name
         .collect()
 }
 
-/// Whether the user writes keywords in lower case.
+/// Returns whether the user writes keywords in lower case.
 fn writes_small(sql: &str, pieces: &[Token]) -> bool {
     let mut keywords = pieces.iter().filter(|token| token.kind == LexemeKind::Keyword);
     keywords.any(|token| sql[token.place.clone()].chars().all(char::is_lowercase))
 }
 
-/// Suggestions that start with the word, then those with a later part that does (`source` finds
+/// Returns the suggestions that start with the word, then those with a later part that does (`source` finds
 /// `acquisition_source`).
 fn matching(found: Vec<Candidate>, word: &str) -> Vec<Candidate> {
     let wanted = word.to_lowercase();
@@ -140,7 +138,7 @@ fn matching(found: Vec<Candidate>, word: &str) -> Vec<Candidate> {
     kept
 }
 
-/// Tables in a statement, with their aliases.
+/// Returns the tables in a statement, with their aliases.
 fn sources(sql: &str, pieces: &[Token]) -> Vec<NamedTable> {
     let text = |at: usize| pieces.get(at).map_or("", |token| &sql[token.place.clone()]);
     let is_name = |at: usize| pieces.get(at).is_some_and(|token| token.kind == LexemeKind::Name);
@@ -158,7 +156,7 @@ fn sources(sql: &str, pieces: &[Token]) -> Vec<NamedTable> {
     found
 }
 
-/// Names of common table expressions: names before `AS (`.
+/// Returns the names of common table expressions: names before `AS (`.
 fn own_names(sql: &str, pieces: &[Token]) -> Vec<String> {
     let text = |token: &Token| sql[token.place.clone()].to_owned();
     let names = pieces.windows(3).filter(|three| {
@@ -171,7 +169,7 @@ fn own_names(sql: &str, pieces: &[Token]) -> Vec<String> {
 mod tests {
     use super::*;
 
-    /// Suggestions at the `|`.
+    /// Returns the suggestions at the `|`.
     fn words(marked: &str) -> Vec<String> {
         let place = marked.find('|').expect("a mark");
         let sql = marked.replace('|', "");

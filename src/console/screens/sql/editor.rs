@@ -28,7 +28,6 @@ pub struct Statement {
 pub struct QueryEditor {
     text: Editor,
     completion: Option<Completion>,
-    /// Byte offset of an error.
     mark: Option<usize>,
 }
 
@@ -43,12 +42,11 @@ impl QueryEditor {
         self.text.text()
     }
 
-    /// Whether it contains only whitespace.
+    /// Returns whether it contains only whitespace.
     pub fn is_blank(&self) -> bool {
         self.text.is_blank()
     }
 
-    /// Replaces the text.
     pub fn replace(&mut self, sql: &str) {
         self.text.replace(sql);
         self.changed();
@@ -58,7 +56,6 @@ impl QueryEditor {
         (self.completion, self.mark) = (None, None);
     }
 
-    /// Byte offset of the cursor.
     fn place(&self) -> usize {
         let (row, column) = self.text.cursor();
         let lines = self.text.lines();
@@ -67,7 +64,7 @@ impl QueryEditor {
         above + before
     }
 
-    /// The statement at the cursor; `None` if it is empty.
+    /// Returns the statement at the cursor; `None` if it is empty.
     pub fn statement(&self) -> Option<Statement> {
         let text = self.text();
         let (range, ..) = statement_at(&text, self.place());
@@ -77,7 +74,7 @@ impl QueryEditor {
         (!sql.is_empty()).then_some(Statement { sql, from })
     }
 
-    /// Index of the statement at the cursor, and the number of statements.
+    /// Returns the index of the statement at the cursor, and the number of statements.
     pub fn count(&self) -> (usize, usize) {
         let (_, number, count) = statement_at(&self.text(), self.place());
         (number, count)

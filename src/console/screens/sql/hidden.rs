@@ -2,7 +2,7 @@
 
 use novamind_tui::sql::{LexemeKind, Token, tokens};
 
-/// Whether a statement contains the name of an x-ray table, such as `hidden.groups`.
+/// Returns whether a statement contains the name of an x-ray table, such as `hidden.groups`.
 pub fn names_hidden(sql: &str) -> bool {
     let pieces: Vec<Token> =
         tokens(sql).into_iter().filter(|token| token.kind != LexemeKind::Comment).collect();

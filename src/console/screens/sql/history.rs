@@ -34,8 +34,8 @@ impl History {
         self.kept.push(Kept { sql: sql.to_owned(), draft });
     }
 
-    /// A picker for the history; `earlier` are statements of previous sessions, newest last. Returns `None`
-    /// if both are empty.
+    /// Returns a picker for the history; `earlier` are statements of previous sessions, newest last. Returns
+    /// `None` if both are empty.
     pub fn picker(&self, earlier: &[String]) -> Option<Picker> {
         let mut items: Vec<ListedQuery> = Vec::new();
         let own = self.kept.iter().rev().map(|kept| (kept.sql.as_str(), kept.draft));
@@ -54,7 +54,7 @@ impl History {
     }
 }
 
-/// A statement in one line, with its title first.
+/// Returns a statement in one line, with its title first.
 fn title(sql: &str) -> String {
     match Head::of(sql).title {
         Some(title) => format!("{title}: {}", in_a_line(body(sql))),

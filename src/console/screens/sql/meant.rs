@@ -7,13 +7,11 @@ use novamind_database::{Cell, Rows};
 /// Rows of a result.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RowsMeant {
-    /// All rows, because there is no filter.
     All,
     /// Rows with a text in at least one of some columns.
     Holding {
         /// The text in lower case.
         text: String,
-        /// Indexes of the columns.
         columns: Vec<usize>,
     },
     /// All rows, despite a filter: the filter matches formatted numbers, which SQL cannot reproduce.
@@ -21,7 +19,7 @@ pub enum RowsMeant {
 }
 
 impl RowsMeant {
-    /// The rows that a filter selects; `shown` are the indexes of the rows that it shows.
+    /// Returns the rows that a filter selects; `shown` are the indexes of the rows that it shows.
     pub fn by(filter: &str, held: &Rows, shown: &[usize]) -> RowsMeant {
         if filter.is_empty() {
             return RowsMeant::All;
@@ -43,7 +41,7 @@ impl RowsMeant {
         RowsMeant::Holding { text, columns: one.map_or(all, |at| vec![at]) }
     }
 
-    /// The SQL clause with a leading line break; `names` are the column names in SQL.
+    /// Returns the SQL clause with a leading line break; `names` are the column names in SQL.
     pub fn clause(&self, names: &[String]) -> String {
         let RowsMeant::Holding { text, columns } = self else { return String::new() };
         let text = text.replace('\'', "''");
@@ -51,7 +49,7 @@ impl RowsMeant {
         format!("\nWHERE {}", columns.iter().filter_map(holds).collect::<Vec<_>>().join("\n    OR "))
     }
 
-    /// Suffix for titles; empty if there is no filter.
+    /// Returns the suffix for titles; empty if there is no filter.
     pub fn in_words(&self) -> String {
         match self {
             RowsMeant::All => String::new(),
@@ -60,14 +58,14 @@ impl RowsMeant {
         }
     }
 
-    /// Warning if the filter is ignored.
+    /// Returns a warning if the filter is ignored.
     pub fn warning(&self) -> Option<String> {
         let RowsMeant::AllBesideFilter(filter) = self else { return None };
         Some(format!("all rows, without the filter \"{filter}\": SQL cannot select the rows that it shows"))
     }
 }
 
-/// Whether SQL sees the values of a column as displayed; decimals are rounded on the screen.
+/// Returns whether SQL sees the values of a column as displayed; decimals are rounded on the screen.
 fn is_exact(held: &Rows, at: usize) -> bool {
     held.rows.iter().all(|row| !matches!(row.get(at), Some(Cell::Real(_))))
 }
@@ -89,7 +87,7 @@ mod tests {
     use crate::test_kit::session;
     use novamind_tui::widgets::Table;
 
-    /// Rows that a filter selects, and the number of shown rows.
+    /// Returns the rows that a filter selects, and the number of shown rows.
     fn meant(held: &Rows, filter: &str) -> (RowsMeant, usize) {
         let mut table = Table::new(values::columns(held));
         table.set_rows(values::cells(held));

@@ -132,12 +132,12 @@ impl Sql {
         self.edit_and_run(sql)
     }
 
-    /// The editor text.
+    /// Returns the editor text.
     pub fn unsent(&self) -> String {
         self.editor.text()
     }
 
-    /// Whether a statement is running.
+    /// Returns whether a statement is running.
     pub fn is_running(&self) -> bool {
         self.running.is_some()
     }
@@ -157,7 +157,7 @@ impl Sql {
         vec![Effect::SentText("sql"), Effect::Ask(ask)]
     }
 
-    /// Whether a statement reads x-ray tables and the run permits it.
+    /// Returns whether a statement reads x-ray tables and the run permits it.
     fn looks_inside(&self, sql: &str) -> bool {
         self.may_look_inside && names_hidden(sql)
     }

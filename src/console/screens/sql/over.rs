@@ -15,17 +15,11 @@ use novamind_record::folder::library::NamedQuery;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Field;
 
-/// An overlay over the panes.
 pub enum Over {
-    /// History of statements.
     Earlier(Picker),
-    /// Named queries.
     Library(Picker),
-    /// Name for a saved statement.
     Saving(Saving),
-    /// Export of a result.
     TakeOut(TakeOut),
-    /// Setup of a pivot.
     Pivot(PivotChoice),
 }
 

@@ -188,7 +188,7 @@ impl Pane<Sql> for TablesPane {
 }
 
 impl Sql {
-    /// Actions on whole results: switch, pin, close, derive a query.
+    /// Runs actions on whole results: switch, pin, close, derive a query.
     fn act_on_results(&mut self, action: Action) -> Option<Vec<Effect>> {
         match action {
             Action::PreviousResult => self.results.walk(false),
@@ -239,7 +239,6 @@ impl Sql {
         effects
     }
 
-    /// Inserts the selected name into the editor.
     fn put_in(&mut self) {
         let Some(entry) = self.browser.selected() else { return };
         if self.editor.is_blank() && entry.column().is_none() {

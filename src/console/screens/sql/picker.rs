@@ -17,14 +17,11 @@ use novamind_tui::widgets::table::first_row;
 /// Below this width the preview is under the list instead of next to it.
 const BESIDE: u16 = 110;
 
-/// An entry of the list.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ListedQuery {
     /// Origin in a word; usually empty.
     pub tag: &'static str,
-    /// Title, searched first.
     pub title: String,
-    /// Explanation.
     pub what: String,
     /// Preview of the statement.
     pub preview: String,
@@ -70,12 +67,10 @@ impl Picker {
         picker
     }
 
-    /// The search field.
     pub fn field(&mut self) -> &mut Field {
         &mut self.field
     }
 
-    /// Updates the matches.
     pub fn find(&mut self) {
         let all = self.items.iter().zip(&self.texts);
         self.found =
@@ -92,7 +87,6 @@ impl Picker {
         self.found.get(self.selected).map(|(at, _)| &self.items[*at])
     }
 
-    /// Runs an action.
     pub fn act(&mut self, action: Action) -> PickedQuery {
         let last = self.found.len().saturating_sub(1);
         match action {
@@ -120,7 +114,6 @@ impl Picker {
         }
     }
 
-    /// Handles a click on a row.
     pub fn click(&mut self, row: usize) -> PickedQuery {
         self.selected = row.min(self.found.len().saturating_sub(1));
         self.act(Action::Commit)
@@ -203,7 +196,7 @@ impl Picker {
     }
 }
 
-/// A highlighted statement, wrapped with indented continuation lines.
+/// Returns a highlighted statement, wrapped with indented continuation lines.
 fn coloured(canvas: &Canvas<'_>, sql: &str, width: usize) -> Vec<Line<'static>> {
     const INDENT: &str = "        ";
     let mut lines = vec![Line::default()];

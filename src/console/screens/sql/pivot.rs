@@ -39,7 +39,8 @@ pub enum PivotStep {
 }
 
 impl PivotChoice {
-    /// Setup of a pivot by a column of a result. Returns `None` if the statement cannot be pivoted.
+    /// Returns the setup of a pivot by a column of a result. Returns `None` if the statement cannot be
+    /// pivoted.
     pub fn of(sql: &str, held: Rows, rows: usize, meant: RowsMeant) -> Option<PivotChoice> {
         let numeric: Vec<usize> =
             (0..held.columns.len()).filter(|at| *at != rows && is_numeric(&held, *at)).collect();
@@ -57,7 +58,6 @@ impl PivotChoice {
         Some(PivotChoice { sql: sql.to_owned(), meant, held, shape, numeric, line: 0 })
     }
 
-    /// Runs an action.
     pub fn act(&mut self, action: Action) -> PivotStep {
         match action {
             Action::Up => self.line = self.line.saturating_sub(1),
@@ -152,13 +152,13 @@ impl PivotChoice {
     }
 }
 
-/// Whether the numbers of a column are identifiers, such as days, which are not summed.
+/// Returns whether the numbers of a column are identifiers, such as days, which are not summed.
 fn names_something(column: &str) -> bool {
     const NAMES: [&str; 6] = ["id", "day", "week", "month", "number", "mod30"];
     column.to_lowercase().split(|letter: char| !letter.is_alphanumeric()).any(|word| NAMES.contains(&word))
 }
 
-/// The next or previous option, cyclically.
+/// Returns the next or previous option, cyclically.
 fn next_of<T: PartialEq + Copy>(all: impl Iterator<Item = T>, now: T, on: bool) -> T {
     let all: Vec<T> = all.collect();
     let at = all.iter().position(|own| *own == now).unwrap_or(0);

@@ -18,7 +18,6 @@ use novamind_tui::widgets::{Axis, Line, Side, Table, Unit, chart};
 /// Maximum number of series; more are hard to distinguish.
 const MOST: usize = 6;
 
-/// The chart.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PlottedColumns {
     kind: ChartKind,
@@ -28,7 +27,6 @@ pub struct PlottedColumns {
     ys: Vec<usize>,
 }
 
-/// Numeric columns.
 fn numeric(rows: &Rows) -> Vec<usize> {
     (0..rows.columns.len()).filter(|at| is_numeric(rows, *at)).collect()
 }
@@ -42,7 +40,8 @@ fn value(rows: &Rows, row: usize, column: usize) -> Option<f64> {
 }
 
 impl PlottedColumns {
-    /// The chart that a statement specifies, otherwise a default. Returns `None` without a numeric column.
+    /// Returns the chart that a statement specifies, otherwise a default. Returns `None` without a numeric
+    /// column.
     pub fn of(rows: &Rows, proposed: Option<&ChartLine>) -> Option<PlottedColumns> {
         proposed.and_then(|line| PlottedColumns::proposed(rows, line)).or_else(|| PlottedColumns::likeliest(rows))
     }
@@ -116,7 +115,7 @@ impl PlottedColumns {
         };
     }
 
-    /// The first plotted column.
+    /// Returns the first plotted column.
     pub fn first_y(&self) -> usize {
         self.ys[0]
     }
@@ -129,7 +128,7 @@ impl PlottedColumns {
         }
     }
 
-    /// Title such as `█ leads · ▒ signed by channel`.
+    /// Returns a title such as `█ leads · ▒ signed by channel`.
     pub fn title(&self, rows: &Rows) -> String {
         let names = self.ys.iter().enumerate();
         let names: Vec<String> =
@@ -138,7 +137,7 @@ impl PlottedColumns {
         format!("{} by {along}", names.join(" · "))
     }
 
-    /// Label of a row: its x value as in the table.
+    /// Returns the label of a row: its x value as in the table.
     fn name(&self, table: &Table, row: usize) -> String {
         match self.x {
             Some(at) => table.rows()[row].get(at).map_or(String::new(), |cell| cell.text.clone()),
@@ -146,7 +145,7 @@ impl PlottedColumns {
         }
     }
 
-    /// Rows in drawing order: by x if it is numeric, otherwise as in the table.
+    /// Returns the rows in drawing order: by x if it is numeric, otherwise as in the table.
     fn order(&self, rows: &Rows, table: &Table) -> Vec<usize> {
         let mut order = table.shown().to_vec();
         if self.kind == ChartKind::Line
@@ -158,7 +157,6 @@ impl PlottedColumns {
         order
     }
 
-    /// Describes a series.
     fn summary(&self, rows: &Rows, table: &Table, column: usize) -> String {
         let order = self.order(rows, table);
         let known: Vec<(usize, f64)> =
@@ -289,18 +287,18 @@ impl PlottedColumns {
     }
 }
 
-/// Whether the sum of a column with this name is meaningful; shares and prices are not summed.
+/// Returns whether the sum of a column with this name is meaningful; shares and prices are not summed.
 fn can_be_added(name: &str) -> bool {
     const NEVER: [&str; 6] = ["percent", "share", "rate", "average", "price", "per"];
     !name.to_lowercase().split(|letter: char| !letter.is_alphanumeric()).any(|word| NEVER.contains(&word))
 }
 
-/// Solid and dotted lines alternate to distinguish series without color.
+/// Returns whether a series is dotted. Solid and dotted lines alternate to distinguish series without color.
 fn is_dotted(series: usize) -> bool {
     series % 2 == 1
 }
 
-/// A number on the x axis: days and weeks in full, large ones short.
+/// Formats a number on the x axis: days and weeks in full, large ones short.
 fn axis_number(value: f64) -> String {
     if value.abs() < 10_000.0 { number((value * 10.0).round() / 10.0) } else { compact(value) }
 }

@@ -25,13 +25,10 @@ pub enum Answer {
     /// No statement has been run.
     #[default]
     None,
-    /// Rows, and the time they took.
     Rows(Rows, Duration),
-    /// The error.
     Refused(Refusal),
 }
 
-/// The results pane.
 #[derive(Default)]
 pub struct Results {
     answer: Answer,
@@ -57,7 +54,7 @@ FROM ad_channel_leads GROUP BY 1, 2 ORDER BY leads DESC
 
 Statements can only read. Days count from 0; amounts are in dollars.";
 
-/// Byte offset of an error, if the message contains it.
+/// Returns the byte offset of an error, if the message contains it.
 pub fn place_of(refusal: &Refusal) -> Option<usize> {
     let (_, place) = refusal.message.rsplit_once("(at character ")?;
     place.strip_suffix(')')?.parse::<usize>().ok()?.checked_sub(1)
@@ -98,29 +95,29 @@ impl Results {
         self.plot.is_some() && self.rows().is_some()
     }
 
-    /// Whether the statement failed.
+    /// Returns whether the statement failed.
     pub fn is_refused(&self) -> bool {
         matches!(self.answer, Answer::Refused(_))
     }
 
-    /// Approximate size in bytes of the rows and their display form.
+    /// Returns the approximate size in bytes of the rows and their display form.
     pub fn bytes(&self) -> usize {
         self.bytes
     }
 
-    /// The rows and the selected column.
+    /// Returns the rows and the selected column.
     pub fn focused_column(&self) -> Option<(&Rows, usize)> {
         let at = self.table.selected_column();
         self.rows().filter(|rows| at < rows.columns.len()).map(|rows| (rows, at))
     }
 
-    /// The rows that counts and pivots cover.
+    /// Returns the rows that counts and pivots cover.
     pub fn rows_meant(&self) -> RowsMeant {
         let all = |rows| RowsMeant::by(self.table.filter_text(), rows, self.table.shown());
         self.rows().map_or(RowsMeant::All, all)
     }
 
-    /// The available rows among them.
+    /// Returns the available rows among them.
     pub fn held(&self, meant: &RowsMeant) -> Rows {
         let Some(all) = self.rows() else { return Rows::default() };
         match (meant, self.rows_as_shown()) {
@@ -129,12 +126,12 @@ impl Results {
         }
     }
 
-    /// Whether there are rows to export.
+    /// Returns whether there are rows to export.
     pub fn has_rows(&self) -> bool {
         self.rows().is_some()
     }
 
-    /// The rows as shown, filtered and sorted.
+    /// Returns the rows as shown, filtered and sorted.
     fn rows_as_shown(&self) -> Option<Rows> {
         let all = self.rows()?;
         let rows = self.table.shown().iter().map(|row| all.rows[*row].clone()).collect();
@@ -206,12 +203,12 @@ impl Results {
         }
     }
 
-    /// All values of the selected row.
+    /// Returns all values of the selected row.
     fn row(&self) -> Option<&[Cell]> {
         self.rows()?.rows.get(self.table.selected()?).map(Vec::as_slice)
     }
 
-    /// Column and value of the selected cell.
+    /// Returns the column and value of the selected cell.
     fn cell(&self) -> Option<(&str, &Cell)> {
         let at = self.table.selected_column();
         Some((self.rows()?.columns.get(at)?, self.row()?.get(at)?))
@@ -257,7 +254,7 @@ impl Results {
         if again { self.act(Action::WholeCell, page) } else { Vec::new() }
     }
 
-    /// Title and note: description of the result, its filter and order.
+    /// Returns the title and note: description of the result, its filter and order.
     pub fn head(&self) -> (String, String) {
         match &self.answer {
             Answer::None => ("Result".to_owned(), "no query yet".to_owned()),
@@ -279,7 +276,6 @@ impl Results {
         canvas.text(row, &format!("running {seconds}… esc cancels"), Role::Warning);
     }
 
-    /// Draws the answer.
     pub fn draw(&self, canvas: &mut Canvas<'_>, seat: Seat, library: &Library) {
         match &self.answer {
             Answer::None => draw_nothing(canvas, seat.area, library),
@@ -320,7 +316,7 @@ impl Results {
         }
     }
 
-    /// Actions for the footer.
+    /// Returns the actions for the footer.
     pub fn hints(&self) -> Vec<Action> {
         match (self.is_chart(), self.rows()) {
             (true, _) => vec![Action::ChartY, Action::ChartKind, Action::CloseChart, Action::EditQuery],
@@ -329,7 +325,7 @@ impl Results {
         }
     }
 
-    /// Actions for the current answer.
+    /// Returns the actions for the current answer.
     pub fn keys(&self) -> &'static [Action] {
         match (self.is_chart(), &self.answer) {
             (true, _) => &[
@@ -369,7 +365,7 @@ fn draw_nothing(canvas: &mut Canvas<'_>, area: Rect, library: &Library) {
     }
 }
 
-/// Outcome of a statement without rows.
+/// Returns the outcome of a statement without rows.
 fn outcome(code: &str) -> &'static str {
     match code {
         "sql_timeout" => "stopped at a limit",
@@ -378,7 +374,6 @@ fn outcome(code: &str) -> &'static str {
     }
 }
 
-/// `Result · 3 rows · 12 ms`.
 fn title(rows: &Rows, took: Duration) -> String {
     let of = if rows.truncated { "first " } else { "" };
     let milliseconds = took.as_secs_f64() * 1e3;
@@ -390,14 +385,14 @@ fn title(rows: &Rows, took: Duration) -> String {
     format!("Result · {of}{} · {time}", takeout::count(rows.rows.len()))
 }
 
-/// Bytes of rows and of their cells, which contain only the start of long texts.
+/// Returns the bytes of rows and of their cells, which contain only the start of long texts.
 fn bytes_of(rows: &Rows) -> usize {
     const OF_A_CELL: usize = 128;
     let text = |cell: &Cell| if let Cell::Text(text) = cell { text.len() + text.len().min(400) } else { 0 };
     rows.rows.iter().flatten().map(|cell| OF_A_CELL + text(cell)).sum()
 }
 
-/// A value for a separate window, with formatted JSON.
+/// Returns a value for a separate window, with formatted JSON.
 fn readable(cell: &Cell) -> String {
     match cell {
         Cell::Null => "NULL".to_owned(),
@@ -427,7 +422,7 @@ fn text(canvas: &mut Canvas<'_>, area: Rect, head: &str, words: &str, role: Role
     used
 }
 
-/// Example statements of the introduction.
+/// Returns the example statements of the introduction.
 #[cfg(test)]
 pub fn examples() -> Vec<String> {
     let statements = LESSON.split("\n\n").filter(|part| part.starts_with("SELECT"));

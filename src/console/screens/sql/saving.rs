@@ -18,7 +18,6 @@ pub struct Saving {
     warned: Option<String>,
 }
 
-/// State of a name.
 enum NameTaken {
     /// Not a valid name.
     Wrong,

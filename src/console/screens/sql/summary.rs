@@ -18,7 +18,6 @@ pub const NOT_A_TABLE: &str = "A query plan cannot be counted or pivoted. Run th
 /// Aggregation of the rows in a cell of a pivot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Aggregate {
-    /// Number of rows.
     Count,
     Sum,
     Mean,
@@ -41,7 +40,7 @@ impl Aggregate {
         }
     }
 
-    /// The SQL expression for a column, or for rows.
+    /// Returns the SQL expression for a column, or for rows.
     fn sql(self, column: Option<&str>) -> String {
         let function = if self == Aggregate::Mean { "avg" } else { self.word() };
         format!("{function}({})", column.unwrap_or("*"))
@@ -66,7 +65,6 @@ struct Source {
     with: String,
     /// FROM clause, with the clause for the covered rows.
     from: String,
-    /// Its columns as written in SQL.
     names: Vec<String>,
 }
 
@@ -99,7 +97,7 @@ impl Source {
     }
 }
 
-/// An identifier, quoted if necessary.
+/// Returns an identifier, quoted if necessary.
 fn identifier(name: &str) -> String {
     let is_word = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
     let plain = name.chars().all(is_word) && !name.starts_with(|first: char| first.is_ascii_digit());
@@ -109,7 +107,7 @@ fn identifier(name: &str) -> String {
     }
 }
 
-/// A literal; `None` for values that SQL cannot compare.
+/// Returns a literal; `None` for values that SQL cannot compare.
 fn literal(cell: &Cell) -> Option<String> {
     match cell {
         Cell::Real(number) if !number.is_finite() => None,
@@ -118,7 +116,7 @@ fn literal(cell: &Cell) -> Option<String> {
     }
 }
 
-/// A statement that counts each value of a column in the result of another one, most frequent first.
+/// Returns a statement that counts each value of a column in the result of another one, most frequent first.
 pub fn count(sql: &str, columns: &[String], at: usize, meant: &RowsMeant) -> Option<String> {
     let source = Source::of(sql, columns, meant)?;
     let name = source.names.get(at)?;
@@ -132,7 +130,7 @@ pub fn count(sql: &str, columns: &[String], at: usize, meant: &RowsMeant) -> Opt
     ))
 }
 
-/// A statement that pivots the covered rows of another one; `held` are its loaded rows.
+/// Returns a statement that pivots the covered rows of another one; `held` are its loaded rows.
 pub fn pivot(sql: &str, held: &Rows, shape: PivotShape, meant: &RowsMeant) -> Option<String> {
     let source = Source::of(sql, &held.columns, meant)?;
     let PivotShape { rows, across, values, aggregate } = shape;
@@ -172,7 +170,7 @@ pub fn pivot(sql: &str, held: &Rows, shape: PivotShape, meant: &RowsMeant) -> Op
     ))
 }
 
-/// Title such as `sum of amount by category and day`.
+/// Returns a title such as `sum of amount by category and day`.
 fn title(held: &Rows, shape: PivotShape) -> String {
     let name = |at: usize| in_a_line(&held.columns[at]);
     let what = match shape.values {
@@ -192,7 +190,7 @@ pub struct Distinct {
 }
 
 impl Distinct {
-    /// The most frequent values of a column among the loaded rows.
+    /// Returns the most frequent values of a column among the loaded rows.
     pub fn of(held: &Rows, at: usize) -> Distinct {
         let mut counted: Vec<(Cell, usize)> = Vec::new();
         let mut cells: Vec<&Cell> = held.rows.iter().filter_map(|row| row.get(at)).collect();
@@ -216,7 +214,7 @@ impl Distinct {
     }
 }
 
-/// Numbers, then texts, then NULL.
+/// Orders numbers before texts, and NULL last.
 fn order(one: &Cell, other: &Cell) -> std::cmp::Ordering {
     let rank = |cell: &Cell| match cell {
         Cell::Integer(_) | Cell::Real(_) => 0,

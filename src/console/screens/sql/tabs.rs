@@ -14,7 +14,6 @@ use novamind_tui::canvas::{Canvas, Click};
 use novamind_tui::sql::tokens;
 use novamind_tui::theme::Role;
 
-/// Maximum number of tabs.
 const MOST: usize = 9;
 /// Maximum number of pinned tabs; one is left for the next statement.
 const MOST_PINNED: usize = MOST - 1;
@@ -27,7 +26,6 @@ const FIRST_CLICK: usize = usize::MAX - MOST;
 /// Below this height only the border identifies the tab.
 const ROOM: u16 = 6;
 
-/// A tab.
 struct Tab {
     sql: String,
     title: String,
@@ -45,7 +43,6 @@ pub struct Tabs {
 }
 
 impl Tabs {
-    /// The shown result.
     pub fn shown(&self) -> &Results {
         self.tabs.get(self.at).map_or(&self.nothing, |tab| &tab.results)
     }
@@ -57,7 +54,7 @@ impl Tabs {
         }
     }
 
-    /// The statement of the shown result.
+    /// Returns the statement of the shown result.
     pub fn statement(&self) -> Option<&str> {
         self.tabs.get(self.at).map(|tab| tab.sql.as_str())
     }
@@ -137,7 +134,7 @@ impl Tabs {
         Ok(tab.pinned)
     }
 
-    /// ` 2/3` if there are several tabs.
+    /// Returns ` 2/3` if there are several tabs.
     pub fn number(&self) -> String {
         if self.tabs.len() > 1 { format!(" {}/{}", self.at + 1, self.tabs.len()) } else { String::new() }
     }
@@ -178,7 +175,7 @@ impl Tabs {
     }
 }
 
-/// Title of a tab: the title of its statement, its first table, or its first words.
+/// Returns the title of a tab: the title of its statement, its first table, or its first words.
 fn title(sql: &str) -> String {
     let short = |text: String| match text.chars().count() {
         long if long > TITLE => text.chars().take(TITLE - 1).chain(['…']).collect(),

@@ -24,7 +24,7 @@ pub struct TakeOut {
 }
 
 impl TakeOut {
-    /// The format of an action; other actions move the selection.
+    /// Returns the format that an action stands for, or moves the selection.
     pub fn act(&mut self, action: Action) -> Option<Action> {
         match action {
             Action::Up => self.selected = self.selected.saturating_sub(1),
@@ -35,7 +35,6 @@ impl TakeOut {
         None
     }
 
-    /// Handles a click on a row.
     pub fn click(&mut self, row: usize) -> Action {
         self.selected = row.min(WAYS.len() - 1);
         WAYS[self.selected]
@@ -92,7 +91,7 @@ fn copy(text: String, rows: &Rows, how: &str) -> Vec<Effect> {
     vec![Effect::Copy(text), Effect::Say(said)]
 }
 
-/// `1 row`, `3,000 rows`.
+/// Returns `1 row`, `3,000 rows`.
 pub fn count(rows: usize) -> String {
     format!("{} {}", grouped(rows as f64, 0), if rows == 1 { "row" } else { "rows" })
 }

@@ -38,7 +38,7 @@ fn hear(screen: &mut Sql, company: &Company, answer: Result<Rows, Refusal>) {
     with_look(company, |look| screen.take_answers(look));
 }
 
-/// The SQL of the only effect.
+/// Returns the SQL of the only effect.
 fn sql(effects: &[Effect]) -> &str {
     &asked::<Query>(effects).sql
 }

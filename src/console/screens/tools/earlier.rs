@@ -8,7 +8,6 @@ use novamind_report::deals::deals_in_words;
 use novamind_session::JournalEntry;
 use novamind_tools::ToolId;
 
-/// Maximum number of calls shown below a form.
 pub const MOST: usize = 10;
 
 /// Calls of a tool, newest first: decision day and arguments, without consecutive duplicates.

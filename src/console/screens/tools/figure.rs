@@ -24,7 +24,6 @@ pub(super) fn of_tool(spec: &'static Spec) -> Figure {
     Figure { title: spec.summary.to_owned(), term: spec.name(), sql: None, why: None }
 }
 
-/// The selected value of a form.
 pub(super) fn of_cell(form: &Form) -> Option<Figure> {
     let block = form.sheet.blocks.get(form.at.block)?;
     form.sheet.slot(form.at)?;
@@ -35,7 +34,7 @@ pub(super) fn of_cell(form: &Form) -> Option<Figure> {
         sql: history(form), why: None })
 }
 
-/// Query for the value over time, or for its effect.
+/// Returns the query for the value over time, or for its effect.
 fn history(form: &Form) -> Option<String> {
     let block = form.sheet.blocks.get(form.at.block)?;
     let name = block.argument.name;

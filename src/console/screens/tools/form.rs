@@ -22,14 +22,11 @@ use novamind_worker::asking::Pending;
 use novamind_worker::company::Company;
 use novamind_worker::questions::CallCheck;
 
-/// The form of a tool.
 pub struct Form {
     pub spec: &'static Spec,
     /// Whether the run offers the tool.
     is_offered: bool,
-    /// Values.
     pub sheet: Sheet,
-    /// The focused cell.
     pub at: CellPlace,
     /// While the user types into the cell: its previous draft.
     pub typing: Option<Option<Field>>,
@@ -46,14 +43,13 @@ pub struct Form {
     checking: Pending<CallCheck>,
     /// The last sent arguments of a tool that keeps its form.
     sent: Option<Value>,
-    /// The last answer.
     pub answer: Option<Result<Value, Refusal>>,
     /// Earlier calls of the tool: decision day and arguments, newest first.
     pub earlier: Vec<(u32, String)>,
 }
 
 impl Form {
-    /// The form with the current values.
+    /// Returns the form with the current values.
     pub fn of(spec: &'static Spec, company: &Company) -> Form {
         Form {
             spec,
@@ -73,19 +69,20 @@ impl Form {
         }
     }
 
-    /// Whether it has unsent values that can be sent. Reading tools have none, and lessons lock some tools.
+    /// Returns whether it has unsent values that can be sent. Reading tools have none, and lessons lock some
+    /// tools.
     pub fn is_draft(&self) -> bool {
         let is_sent = || self.sent.is_some() && self.sheet.arguments().ok() == self.sent;
         let can_be_sent = self.spec.kind.acts() || (self.spec.id.runs_code() && !is_sent());
         self.is_offered && can_be_sent && self.sheet.is_changed()
     }
 
-    /// Whether keys type characters.
+    /// Returns whether keys type characters.
     pub fn is_typing(&self) -> bool {
         self.typing.is_some() || self.adding.is_some()
     }
 
-    /// The code editor, while it is open.
+    /// Returns the code editor, while it is open.
     pub fn writing(&self) -> Option<&Editor> {
         self.writing.as_deref()
     }
@@ -135,13 +132,13 @@ impl Form {
         }
     }
 
-    /// The equivalent call in a program.
+    /// Returns the equivalent call in a program.
     pub fn call(&self) -> String {
         let arguments = self.sheet.arguments().map_or("…".to_owned(), |arguments| spaced(&arguments));
         format!("{}.{}({arguments})", self.spec.module.id(), self.spec.name())
     }
 
-    /// Channel and group of the focused cell in the advertising matrix.
+    /// Returns the channel and group of the focused cell in the advertising matrix.
     pub fn cell_names(&self) -> Option<(&str, &str)> {
         let block = self.sheet.blocks.get(self.at.block)?;
         match block.argument.kind {
@@ -173,7 +170,6 @@ impl Form {
         }
     }
 
-    /// Stores the result of the check.
     pub fn take_preview(&mut self) {
         if let Some((_, preview)) = self.checking.try_take() {
             self.preview = Some(preview);
@@ -219,7 +215,6 @@ impl Form {
         }
     }
 
-    /// Runs an action of the form or of a list.
     pub fn act(&mut self, action: Action, company: &Company) -> Vec<Effect> {
         let left = self.left.take();
         match action {
@@ -275,7 +270,7 @@ impl Form {
         }
     }
 
-    /// Whether a digit starts a number in the focused cell.
+    /// Returns whether a digit starts a number in the focused cell.
     pub fn takes_numbers(&self) -> bool {
         let is_cell = self.sheet.slot(self.at).is_some() && !self.is_at_text();
         !self.is_typing() && (is_cell || self.at_adding_row().is_some())
@@ -285,7 +280,7 @@ impl Form {
         self.sheet.blocks.get(self.at.block).is_some_and(super::sheet::Block::is_text)
     }
 
-    /// The block whose last line adds a row, if that line has the focus.
+    /// Returns the block whose last line adds a row, if that line has the focus.
     pub fn at_adding_row(&self) -> Option<usize> {
         let block = self.sheet.blocks.get(self.at.block)?;
         (block.is_open() && self.at.row == block.rows.len()).then_some(self.at.block)
@@ -344,7 +339,7 @@ impl Form {
         }
     }
 
-    /// Typed text in the order of the cells.
+    /// Returns the typed text in the order of the cells.
     pub fn typed_text(&self) -> String {
         let adding = self.adding.iter().map(|(_, field)| field.text());
         let drafts = self.sheet.places().filter_map(|place| self.sheet.slot(place)?.draft.as_ref());
@@ -383,7 +378,7 @@ impl Form {
         self.check()
     }
 
-    /// Focusable lines in reading order: block, row, number of cells.
+    /// Returns the focusable lines in reading order: block, row, number of cells.
     fn lines(&self) -> Vec<(usize, usize, usize)> {
         let mut lines = Vec::new();
         for (at, block) in self.sheet.blocks.iter().enumerate() {
@@ -428,7 +423,6 @@ impl Form {
         self.at = CellPlace { block, row, column: self.at.column.min(cells - 1) };
     }
 
-    /// Handles a key typed into a cell.
     pub fn key(&mut self, key: &KeyEvent) -> Vec<Effect> {
         self.left = None;
         if self.takes_numbers() && Chord::of(key).begins_number() {
@@ -465,7 +459,6 @@ impl Form {
         self.check()
     }
 
-    /// Handles pasted text.
     pub fn paste(&mut self, text: &str) -> Vec<Effect> {
         if self.typing.is_none() && self.adding.is_none() {
             self.edit();
@@ -487,7 +480,7 @@ impl Form {
     }
 }
 
-/// JSON with spaces after commas and colons, so that lines can wrap.
+/// Returns the JSON with spaces after commas and colons, so that lines can wrap.
 pub(super) fn spaced(value: &Value) -> String {
     match value {
         Value::Object(fields) => {

@@ -132,7 +132,6 @@ impl Pane<Tools> for FormPane {
     }
 }
 
-/// Draws the code editor, which takes the whole form.
 fn draw_code(editor: &Editor, canvas: &mut Canvas<'_>, area: Rect, focused: bool) {
     let (row, _) = editor.cursor();
     let words = format!("code, line {} of {}", row + 1, editor.lines().len());
@@ -140,7 +139,7 @@ fn draw_code(editor: &Editor, canvas: &mut Canvas<'_>, area: Rect, focused: bool
     editor.draw(canvas, under(area, 1), focused, "SQL, or Python that starts with #");
 }
 
-/// The area below its first rows.
+/// Returns the area below its first rows.
 fn under(area: Rect, rows: u16) -> Rect {
     let rows = rows.min(area.height);
     Rect { y: area.y + rows, height: area.height - rows, ..area }
@@ -149,7 +148,6 @@ fn under(area: Rect, rows: u16) -> Rect {
 /// Width from which the short margins have a line per plan.
 const BRIEF: usize = 36;
 
-/// Layout of a form.
 struct Laid {
     /// Description and cost of the tool, with a blank row if it fits.
     head: Vec<(String, Role)>,
@@ -184,7 +182,6 @@ fn lay_out(tools: &Tools, form: &Form, area: Rect, look: &Look<'_>) -> Laid {
     Laid { head, outcome, gap: 0 }
 }
 
-/// Draws description and cost; returns the area below.
 fn draw_head(head: &[(String, Role)], canvas: &mut Canvas<'_>, area: Rect) -> Rect {
     let lines: Vec<TextLine<'_>> =
         head.iter().map(|(text, role)| TextLine::from(canvas.span(text.as_str(), *role))).collect();
@@ -271,7 +268,7 @@ fn when(spec: &Spec) -> &'static str {
     }
 }
 
-/// Cost and effect date of any call of the tool.
+/// Returns the cost and effect date of any call of the tool.
 fn terms(spec: &Spec, numbers: &Numbers, today: u32) -> String {
     let from = match spec.when {
         When::NextDay => format!(" Takes effect on day {}.", today + 1),

@@ -16,16 +16,14 @@ const NAME: u16 = 19;
 /// Width of the column with the results of a channel.
 const SIDE: u16 = 20;
 
-/// Width of a cell; blocks with many columns have narrower cells.
+/// Returns the width of a cell; blocks with many columns have narrower cells.
 fn cell_width(block: &Block) -> u16 {
     if block.columns.len() > 1 { 9 } else { 12 }
 }
 
-/// A line of the form.
 pub(super) enum FormLine {
     /// Name of an argument with its column headings.
     Head(usize),
-    /// A row of a block.
     Row(usize, usize),
     /// Input to add a customer.
     Add(usize),
@@ -88,7 +86,7 @@ pub(super) fn draw_sheet(
     }
 }
 
-/// Area for the results of each channel: next to a complete matrix, or in wide windows.
+/// Returns the area for the results of each channel: next to a complete matrix, or in wide windows.
 fn side_of(form: &Form, leads: &Leads, area: Rect) -> Rect {
     let none = Rect { width: 0, ..area };
     let Some(block) = form.sheet.blocks.iter().find(|block| leads.is_of(block)) else { return none };
@@ -110,7 +108,7 @@ fn draw_side(form: &Form, leads: &Leads, line: &FormLine, canvas: &mut Canvas<'_
     }
 }
 
-/// Columns of a block that fit, including the focused one.
+/// Returns the columns of a block that fit, including the focused one.
 fn columns_shown(form: &Form, at: usize, width: u16) -> std::ops::Range<usize> {
     let block = &form.sheet.blocks[at];
     let cell = cell_width(block);
@@ -201,7 +199,7 @@ fn draw_row(form: &Form, at: usize, index: usize, canvas: &mut Canvas<'_>, row: 
     }
 }
 
-/// A text line takes the whole row.
+/// Draws a text line, which takes the whole row.
 fn draw_text(form: &Form, at: usize, canvas: &mut Canvas<'_>, row: Rect, here: bool) {
     let place = CellPlace { block: at, row: 0, column: 0 };
     let Some(slot) = form.sheet.slot(place) else { return };
@@ -221,7 +219,7 @@ fn draw_text(form: &Form, at: usize, canvas: &mut Canvas<'_>, row: Rect, here: b
     canvas.text(row, if text.is_empty() { "·" } else { &text }, role);
 }
 
-/// A text in one line: its first line, and the number of lines.
+/// Returns a text in one line: its first line, and the number of lines.
 fn in_a_line(text: &str) -> String {
     match text.split_once('\n') {
         None => text.to_owned(),

@@ -14,7 +14,6 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;
 use novamind_tui::widgets::table::first_row;
 
-/// Tools by module.
 pub struct ToolListPane;
 
 impl Pane<Tools> for ToolListPane {

@@ -6,8 +6,8 @@ use novamind_report::plan_margins::{Lever, PlanTerms, Sales, margin_lines, margi
 use novamind_tools::ToolId;
 use novamind_session::identifiers::ByPlan;
 
-/// Margin lines for a form, heading first: for every model tier, or in brief for the set tier only. Empty for
-/// other tools.
+/// Returns the margin lines for a form, heading first: for every model tier, or in brief for the set tier
+/// only. Empty for other tools.
 pub fn margins(form: &Form, sales: &Sales, company: &Company, brief: bool) -> Vec<String> {
     let Some(lever) = Lever::of(form.spec.id) else { return Vec::new() };
     let now = ByPlan::from_fn(|plan| PlanTerms {

@@ -64,7 +64,7 @@ pub struct Tools {
 }
 
 impl Tools {
-    /// Tools that pass the filter, in catalog order.
+    /// Returns the tools that pass the filter, in catalog order.
     fn shown(&self) -> Vec<&'static Spec> {
         let wanted = self.filter.to_lowercase();
         let fits = |spec: &&'static Spec| {
@@ -75,7 +75,6 @@ impl Tools {
         CATALOGUE.iter().map(|tool| tool.spec()).filter(fits).collect()
     }
 
-    /// The selected tool.
     fn here(&self) -> Option<&'static Spec> {
         self.shown().get(self.selected).copied()
     }
@@ -112,7 +111,7 @@ impl Tools {
         }
     }
 
-    /// Path of the focused cell.
+    /// Returns the path of the focused cell.
     #[cfg(test)]
     pub fn place_path(&self) -> Option<String> {
         let form = self.seen_form()?;
@@ -120,7 +119,7 @@ impl Tools {
         Some(block.path(form.at.row, form.at.column))
     }
 
-    /// Arguments that the shown form would send.
+    /// Returns the arguments that the shown form would send.
     #[cfg(test)]
     pub fn typed_arguments(&self) -> Option<Value> {
         self.seen_form()?.sheet.arguments().ok()
@@ -139,17 +138,17 @@ impl Tools {
         self.forms.values().filter(|form| form.is_draft())
     }
 
-    /// Tools whose forms have unsent values.
+    /// Returns the tools whose forms have unsent values.
     pub fn unsent(&self) -> Vec<ToolId> {
         self.drafts().map(|form| form.spec.id).collect()
     }
 
-    /// Name of the tool whose form is shown.
+    /// Returns the name of the tool whose form is shown.
     pub fn form_name(&self) -> Option<&'static str> {
         self.here().map(Spec::name)
     }
 
-    /// Unsent values by tool and path.
+    /// Returns the unsent values by tool and path.
     pub fn typed_values(&self) -> BTreeMap<ToolId, BTreeMap<String, String>> {
         let unsent = self.unsent().into_iter();
         unsent.filter_map(|tool| Some((tool, self.forms.get(&tool)?.sheet.typed()))).collect()
@@ -171,7 +170,7 @@ impl Tools {
         }
     }
 
-    /// This week's calls and drafts, one per line, for copying.
+    /// Returns this week's calls and drafts, one per line, for copying.
     fn calls(&self, company: &Company) -> String {
         let day = company.seen.day;
         let done = company.journal.iter().filter_map(|entry| match entry {
@@ -274,7 +273,8 @@ impl ScreenState for Tools {
     }
 }
 
-/// An answer as users see it: estimates as ranges with their day, and the minimum for means of projects.
+/// Returns an answer as users see it: estimates as ranges with their day, and the minimum for means of
+/// projects.
 fn for_people(answer: &Answer, company: &Company) -> Value {
     let told = plain_numbers(answer.to_json());
     match answer {

@@ -32,12 +32,12 @@ impl Leads {
         Leads(rows.rows.iter().map(own).collect())
     }
 
-    /// Whether a block shows them.
+    /// Returns whether a block shows them.
     pub fn is_of(&self, block: &Block) -> bool {
         matches!(block.argument.kind, ArgumentKind::Matrix(Key::Channel, Key::Group, _))
     }
 
-    /// Groups with the most leads per dollar in a channel, best first: `S1 298 · S3 71`.
+    /// Returns the groups with the most leads per dollar in a channel, best first: `S1 298 · S3 71`.
     pub fn best(&self, channel: &str) -> Option<String> {
         let mut rates: Vec<(&str, f64)> = self
             .0
@@ -79,7 +79,6 @@ pub(super) enum Detail {
     Brief,
 }
 
-/// Text below the values.
 pub(super) struct OutcomeLines {
     pub lines: Vec<(String, Role)>,
     /// Number of leading lines up to the last row of margins, or of the project's range; 0 for other tools.
@@ -87,13 +86,14 @@ pub(super) struct OutcomeLines {
 }
 
 impl OutcomeLines {
-    /// Whether a row of the margins is too wide.
+    /// Returns whether a row of the margins is too wide.
     pub fn is_cut(&self, width: usize) -> bool {
         self.lines.iter().take(self.needed).any(|(line, _)| line.chars().count() > width)
     }
 }
 
-/// Text below the values: check of the call, the call, its effect, reference figures, and the answer.
+/// Returns the text below the values: check of the call, the call, its effect, reference figures, and the
+/// answer.
 pub(super) fn outcome_lines(
     form: &Form,
     leads: &Leads,
@@ -211,7 +211,7 @@ fn answer_lines(answer: &Result<Value, novamind_tools::Refusal>, paragraph: &mut
     }
 }
 
-/// An answer as indented lines, with flat objects on one line.
+/// Returns an answer as indented lines, with flat objects on one line.
 fn readable(value: &Value, depth: usize) -> Vec<String> {
     let indent = "  ".repeat(depth + 1);
     let flat = |value: &Value| !matches!(value, Value::Object(_) | Value::Array(_));

@@ -10,7 +10,7 @@ use novamind_session::ResearchMeans;
 use novamind_tools::{ResearchTierFacts, ToolId};
 use novamind_tui::text::number;
 
-/// Lines next to a form, heading first; empty for tools without reference figures.
+/// Returns the lines next to a form, heading first; empty for tools without reference figures.
 pub fn reference(tool: ToolId, company: &Company) -> Vec<String> {
     match tool {
         ToolId::SetModelTiers | ToolId::SetUsageQuotas => models(company),
@@ -22,7 +22,7 @@ pub fn reference(tool: ToolId, company: &Company) -> Vec<String> {
     }
 }
 
-/// Tiers by number.
+/// Returns the tiers by number.
 fn tiers<T>(costs: &IndexMap<u8, T>) -> Vec<(u8, &T)> {
     let mut tiers: Vec<(u8, &T)> = costs.iter().map(|(tier, facts)| (*tier, facts)).collect();
     tiers.sort_by_key(|(tier, _)| *tier);

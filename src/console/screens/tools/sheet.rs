@@ -12,7 +12,6 @@ use novamind_tools::{Argument, ArgumentKind, Key, Kind, Range, Spec, ToolId};
 use novamind_tui::text::number;
 use novamind_tui::widgets::Field;
 
-/// The argument that contains a program or a statement.
 const CODE: &str = "code";
 
 /// An editable value.
@@ -37,7 +36,7 @@ impl Slot {
         }
     }
 
-    /// The number to send; `None` if empty.
+    /// Returns the number to send; `None` if empty.
     ///
     /// # Errors
     /// The text is not a number.
@@ -49,13 +48,12 @@ impl Slot {
         }
     }
 
-    /// Whether it differs from the current value.
+    /// Returns whether it differs from the current value.
     pub fn is_changed(&self) -> bool {
         self.value().map_or(true, |value| value.unwrap_or(0.0) != self.current.unwrap_or(0.0))
     }
 }
 
-/// A number in input format: no thousands separators, no needless decimals.
 fn plain(value: f64) -> String {
     number(value).replace(',', "")
 }
@@ -107,7 +105,6 @@ impl Block {
         Block { argument, doc, rows, columns, slots }
     }
 
-    /// Valid numbers.
     pub fn range(&self) -> Range {
         match self.argument.kind {
             ArgumentKind::Number(range)
@@ -122,17 +119,16 @@ impl Block {
         matches!(self.argument.kind, ArgumentKind::Number(_) | ArgumentKind::Integer(_))
     }
 
-    /// Whether it is text, code, or a JSON list.
     pub fn is_text(&self) -> bool {
         matches!(self.argument.kind, ArgumentKind::Text | ArgumentKind::Structure(_) | ArgumentKind::Deals(_))
     }
 
-    /// Whether it is a program or a statement with several lines.
+    /// Returns whether it is a program or a statement with several lines.
     pub fn is_code(&self) -> bool {
         self.argument.kind == ArgumentKind::Text && self.argument.name == CODE
     }
 
-    /// Name of its content for key hints.
+    /// Returns the name of its content for key hints.
     pub fn edited(&self) -> &'static str {
         match self.argument.kind {
             _ if self.is_code() => "the code",
@@ -142,7 +138,7 @@ impl Block {
         }
     }
 
-    /// Whether rows can be added because customers are too many to list.
+    /// Returns whether rows can be added because customers are too many to list.
     pub fn is_open(&self) -> bool {
         matches!(self.argument.kind, ArgumentKind::Map(Key::Customer, _))
     }
@@ -154,17 +150,17 @@ impl Block {
         }
     }
 
-    /// Sum of the new values that can be parsed.
+    /// Returns the sum of the new values that can be parsed.
     pub fn total(&self) -> f64 {
         self.slots.iter().flatten().filter_map(|slot| slot.value().ok().flatten()).sum()
     }
 
-    /// Sum of the current values.
+    /// Returns the sum of the current values.
     pub fn total_now(&self) -> f64 {
         self.slots.iter().flatten().filter_map(|slot| slot.current).sum()
     }
 
-    /// Path of a cell, as in rejections.
+    /// Returns the path of a cell, as in rejections.
     pub fn path(&self, row: usize, column: usize) -> String {
         match self.argument.kind {
             ArgumentKind::Map(..) => format!("{}.{}", self.argument.name, self.rows[row]),
@@ -175,7 +171,7 @@ impl Block {
         }
     }
 
-    /// The value of a text line, parsed as JSON for lists and objects.
+    /// Returns the value of a text line, parsed as JSON for lists and objects.
     fn text_value(&self) -> Result<Option<Value>, CellPlace> {
         let text = self.slots[0][0].text();
         match self.argument.kind {
@@ -185,7 +181,7 @@ impl Block {
         }
     }
 
-    /// Error text for invalid input.
+    /// Returns the error text for invalid input.
     pub fn expected(&self) -> &'static str {
         if self.is_text() {
             "enter a list or object as JSON"
@@ -194,7 +190,7 @@ impl Block {
         }
     }
 
-    /// The value to send.
+    /// Returns the value to send.
     fn value(&self) -> Result<Option<Value>, CellPlace> {
         let number = |row: usize, column: usize| {
             self.slots[row][column].value().map_err(|()| CellPlace { block: 0, row, column })
@@ -229,7 +225,6 @@ impl Block {
     }
 }
 
-/// Position of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct CellPlace {
     pub block: usize,
@@ -246,7 +241,7 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// The sheet of a tool with the current values.
+    /// Returns the sheet of a tool with the current values.
     pub fn of(spec: &'static Spec, company: &Company) -> Sheet {
         let nothing = Map::new();
         let current = company.settings.get(&spec.id).unwrap_or(&nothing);
@@ -257,7 +252,7 @@ impl Sheet {
         Sheet { spec, blocks: blocks.filter(|block| !elsewhere(block)).collect() }
     }
 
-    /// The sheet with updated values, and the drafts that still differ.
+    /// Returns the sheet with updated values, and the drafts that still differ.
     pub fn renewed(&self, company: &Company) -> Sheet {
         let mut sheet = Sheet::of(self.spec, company);
         for (block, old) in sheet.blocks.iter_mut().zip(&self.blocks) {
@@ -295,7 +290,7 @@ impl Sheet {
         }
     }
 
-    /// Drafts by path.
+    /// Returns the drafts by path.
     pub fn typed(&self) -> BTreeMap<String, String> {
         let typed = |place: CellPlace| {
             let draft = self.slot(place)?.draft.as_ref()?;
@@ -327,7 +322,7 @@ impl Sheet {
         self.blocks.iter().any(Block::is_changed)
     }
 
-    /// Arguments of the call: required ones, and changed ones.
+    /// Returns the arguments of the call: required ones, and changed ones.
     ///
     /// # Errors
     /// The first cell with invalid input.
@@ -344,12 +339,12 @@ impl Sheet {
         Ok(Value::Object(arguments))
     }
 
-    /// The cell that a rejection names.
+    /// Returns the cell that a rejection names.
     pub fn place_of(&self, path: &str) -> Option<CellPlace> {
         self.places().find(|place| self.blocks[place.block].path(place.row, place.column) == path)
     }
 
-    /// The first cell with this name in its path.
+    /// Returns the first cell with this name in its path.
     pub fn place_for(&self, name: &str) -> Option<CellPlace> {
         let is_for = |place: &CellPlace| {
             self.blocks[place.block].path(place.row, place.column).split('.').any(|own| own == name)
@@ -357,7 +352,6 @@ impl Sheet {
         self.places().find(is_for)
     }
 
-    /// All cells in reading order.
     pub fn places(&self) -> impl Iterator<Item = CellPlace> + '_ {
         self.blocks.iter().enumerate().flat_map(|(block, own)| {
             (0..own.rows.len())

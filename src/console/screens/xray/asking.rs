@@ -25,7 +25,6 @@ impl Xray {
         self.send_in_turn(LookQuestion::Breakpoints(work))
     }
 
-    /// Commands without an answer yet.
     pub(super) fn words_asked(&self) -> Option<&str> {
         self.waiting.iter().rev().chain(self.asked.question()).find_map(|question| match question {
             LookQuestion::Words(words, _) => Some(words.as_str()),
@@ -68,7 +67,7 @@ impl Xray {
     }
 }
 
-/// Whether a question changes nothing.
+/// Returns whether a question changes nothing.
 fn only_asks(question: &LookQuestion) -> bool {
     match question {
         LookQuestion::Words(_, asked) => !asked.changes_run(),

@@ -13,11 +13,10 @@ use novamind_tui::theme::Role;
 const WIDE: usize = 13;
 /// Width of a cell with a glyph and a sign.
 const NARROW: usize = 5;
-/// Width of the group names.
 const NAME: usize = 6;
 
-/// Rows of a map in a given width. Numbers are in the cells if they fit, otherwise below the map. Columns
-/// that do not fit continue in another block.
+/// Returns the rows of a map in a given width. Numbers are in the cells if they fit, otherwise below the map.
+/// Columns that do not fit continue in another block.
 pub fn rows(map: &SpillMap, width: usize) -> Vec<Row> {
     let plain = |text: &str, role| wrapped(text, width).into_iter().map(move |part| vec![(part, role)]);
     let mut rows: Vec<Row> = plain(&map.heading, Role::Header).collect();
@@ -71,7 +70,7 @@ fn role_of(change: f64) -> Role {
     if change < 0.0 { Role::Bad } else { Role::Good }
 }
 
-/// The numbers of a row: `  S1→ S2 +0.000120, S3 -0.000002`; `None` if no group received a spillover.
+/// Returns the numbers of a row: `  S1→ S2 +0.000120, S3 -0.000002`; `None` if no group received a spillover.
 fn numbers(row: &SpillRow, map: &SpillMap) -> Option<String> {
     let heard = row.cells.iter().zip(&map.targets).filter_map(|(cell, to)| match cell {
         SpillCell::Heard(change, _) => Some(format!("{to} {change:+.6}")),

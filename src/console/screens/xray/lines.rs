@@ -18,10 +18,8 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::spark;
 use novamind_worker::look_inside::{LookCurve, LookFound};
 
-/// A row of styled text.
 pub type Row = Vec<(String, Role)>;
 
-/// Maximum days of a sparkline.
 const DAYS: usize = 28;
 
 /// Draws the wrapped result, with the cursor on a factor of the leads.
@@ -51,7 +49,7 @@ pub fn draw(xray: &Xray, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
     }
 }
 
-/// Wrapped rows, with sparklines after their lines, or below them if they do not fit.
+/// Returns the wrapped rows, with sparklines after their lines, or below them if they do not fit.
 fn rows_of_words(found: &LookFound, marked: Option<usize>, focused: bool, width: usize) -> Vec<Row> {
     let mut rows = Vec::new();
     for (at, line) in found.lines.iter().enumerate() {
@@ -82,11 +80,8 @@ fn spark_of(curve: &LookCurve) -> String {
     spark(&shown, DAYS)
 }
 
-/// Content of the pane.
 enum Content<'a> {
-    /// A message.
     Sentence(String, Role),
-    /// A result.
     Found(&'a LookFound),
 }
 
@@ -130,7 +125,6 @@ fn shown<'a>(xray: &'a Xray, look: &Look<'_>) -> Content<'a> {
 /// Indentation of continued rows.
 const SET_BACK: usize = 6;
 
-/// Minimum gap between table columns.
 const GAP: &str = "  ";
 
 /// Wraps a line. Table rows keep the spaces that align their columns; cells that do not fit continue in the

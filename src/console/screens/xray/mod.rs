@@ -51,12 +51,10 @@ pub enum XrayPane {
 
 /// Minimum width at which the lists stay visible next to the focused result.
 const WIDE: u16 = 90;
-/// Width of the lists.
 const LISTS: u16 = 16;
 /// Minimum height at which both lists are stacked.
 const HIGH: u16 = 20;
 
-/// The result of an inspection.
 struct Seen {
     question: LookQuestion,
     found: Result<LookFound, String>,
@@ -73,7 +71,6 @@ pub struct Xray {
     parts: Table,
     set: Table,
     breakpoints: Vec<Breakpoint>,
-    /// The last simulated day.
     last_day: u32,
     /// The selected day; `None` for the last one.
     day: Option<u32>,
@@ -83,9 +80,7 @@ pub struct Xray {
     /// Index of the factor at the cursor.
     factor: usize,
     typing: Option<TypedLine>,
-    /// Error in the typed input.
     problem: Option<String>,
-    /// The question being answered.
     asked: Pending<LookQuestion>,
     /// Typed questions that wait, in order.
     waiting: VecDeque<LookQuestion>,
@@ -130,7 +125,8 @@ impl Xray {
         }
     }
 
-    /// The question for the current view; `None` if a selection is missing or no day has been simulated.
+    /// Returns the question for the current view; `None` if a selection is missing or no day has been
+    /// simulated.
     fn wanted(&self) -> Option<LookQuestion> {
         let day = self.day();
         let needs_day = !matches!(self.view(), View::Breakpoints | View::Words);
@@ -153,7 +149,7 @@ impl Xray {
         })
     }
 
-    /// The day of the result. For a former customer it is at most the last day as a subscriber.
+    /// Returns the day of the result. For a former customer it is at most the last day as a subscriber.
     fn day_seen(&self) -> u32 {
         let seen = self.seen.as_ref().filter(|seen| self.wanted().as_ref() == Some(&seen.question));
         seen.and_then(|seen| seen.found.as_ref().ok()?.day).unwrap_or_else(|| self.day())
@@ -190,7 +186,6 @@ impl Xray {
         self.begin_view();
     }
 
-    /// Resets the state of the previous view.
     fn begin_view(&mut self) {
         (self.scroll, self.typing, self.problem) = (Scroll::default(), None, None);
     }
@@ -317,7 +312,6 @@ impl Xray {
         }
     }
 
-    /// Runs an action on breakpoints.
     fn act_on_breakpoints(&mut self, action: Action) -> Vec<Effect> {
         if self.view() != View::Breakpoints {
             self.show(View::Breakpoints);

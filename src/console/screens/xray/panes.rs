@@ -31,7 +31,6 @@ fn scopes_of_list(table: Option<&Table>) -> Vec<Scope> {
     }
 }
 
-/// Keys of a view.
 fn keys_of(view: View) -> &'static [Action] {
     match view {
         View::Leads => &[

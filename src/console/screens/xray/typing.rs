@@ -8,7 +8,6 @@ use novamind_session::identifiers::Group;
 use novamind_insight::{Condition, ConditionProblem, DrawnPart, LeadFactor};
 use novamind_tui::widgets::Field;
 
-/// Kind of input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Expected {
     /// A group with an optional day.
@@ -18,7 +17,6 @@ pub enum Expected {
     /// A customer number with an optional day.
     Customer,
     Day,
-    /// The condition of a breakpoint.
     Condition,
     Days,
     /// The fixed value of a factor of the leads.
@@ -37,7 +35,6 @@ pub enum Typed {
     /// A customer number, with the day if one was typed.
     Customer(u32, Option<u32>),
     Day(u32),
-    /// The condition of a breakpoint.
     Condition(Condition),
     /// A number of days, at least 1.
     Days(u32),
@@ -47,7 +44,6 @@ pub enum Typed {
     Words(String, AskedWords),
 }
 
-/// A line being typed.
 #[derive(Debug)]
 pub struct TypedLine {
     pub expected: Expected,
@@ -59,7 +55,7 @@ const HELD: [&str; LeadFactor::ALL.len()] =
     ["R fixed at (1)", "D fixed at (1)", "C fixed at (1)", "M fixed at (1)", "A fixed at (1)", "Z fixed at (1)"];
 
 impl Expected {
-    /// Kind of input of a view; `None` if it has nothing to choose.
+    /// Returns the kind of input of a view; `None` if it has nothing to choose.
     pub fn in_view(view: View) -> Option<Expected> {
         match (view, view.choices()) {
             (View::Customer, _) => Some(Expected::Customer),
@@ -72,7 +68,6 @@ impl Expected {
         }
     }
 
-    /// Prompt before the line.
     pub fn prompt(self) -> &'static str {
         match self {
             Expected::Group => "group [day]",
@@ -152,7 +147,7 @@ impl Typed {
     }
 }
 
-/// The first word, and the day after it, if there is one.
+/// Returns the first word, and the day after it, if there is one.
 fn with_day(text: &str) -> Result<(&str, Option<u32>), String> {
     match text.split_once(char::is_whitespace) {
         Some((first, day)) => Ok((first, Some(day_of(day.trim())?))),

@@ -2,7 +2,6 @@
 
 use strum::VariantArray;
 
-/// A view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
 pub enum View {
     /// The equation of a group's leads.
@@ -16,7 +15,6 @@ pub enum View {
     Reputation,
     /// Spillover of reputation.
     Spillover,
-    /// Competitors.
     Rivals,
     Drift,
     /// Next random draws of a component.
@@ -28,13 +26,11 @@ pub enum View {
     Words,
 }
 
-/// Choices of a view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Choices {
     Groups,
     /// Components with random draws.
     Parts,
-    /// Breakpoints that are set.
     Breakpoints,
     /// None: the view shows the whole market, or typed commands.
     Nothing,
@@ -66,12 +62,11 @@ impl View {
         }
     }
 
-    /// Whether it shows one day. The others show future values or settings.
+    /// Returns whether it shows one day. The others show future values or settings.
     pub fn has_day(self) -> bool {
         !matches!(self, View::Streams | View::Breakpoints | View::Words)
     }
 
-    /// Its glossary term.
     pub fn term(self) -> &'static str {
         match self {
             View::Breakpoints => "breakpoint",
@@ -81,7 +76,6 @@ impl View {
 }
 
 impl Choices {
-    /// Title of the list.
     pub fn title(self) -> &'static str {
         match self {
             Choices::Groups => "Group",

@@ -22,7 +22,6 @@ const RANKING: (u16, u16) = (29, 52);
 const WIDE: u16 = 110;
 /// Minimum height for separate guesses and pitfalls.
 const HIGH: u16 = 34;
-/// Mark of the selected student's point.
 const LIT: &str = "◆";
 
 impl ClassPage {
@@ -111,7 +110,7 @@ impl ClassPage {
         }
     }
 
-    /// Part title and selected student, for the note of a pane.
+    /// Returns the part title and selected student, for the note of a pane.
     fn note(&self, view: &ClassView<'_>, ranking: &[RankedStudent<'_>], sign: &str) -> String {
         let lit = self.lit(ranking).map(|at| format!("{} {sign}", ranking[at].name));
         let part = view.part_title(self.part).map(str::to_owned);
@@ -149,7 +148,7 @@ impl ClassPage {
             .draw(canvas, inside);
     }
 
-    /// Points of all students, with a mark for the selected one.
+    /// Draws the points of all students, with a mark for the selected one.
     fn draw_points(
         &self,
         canvas: &mut Canvas<'_>,
@@ -224,7 +223,7 @@ impl ClassPage {
         }
     }
 
-    /// Guesses on the x axis, outcomes on the y axis.
+    /// Draws guesses on the x axis and outcomes on the y axis.
     fn draw_numbers(&self, canvas: &mut Canvas<'_>, area: Rect, own: &AskedClass<'_>) {
         let points = own.points();
         let both = || own.answers.iter().flat_map(|answer| [answer.1, answer.2]);
@@ -239,7 +238,7 @@ impl ClassPage {
     }
 }
 
-/// Cells of the ranking; tries and hints only in wide windows.
+/// Draws the cells of the ranking; tries and hints only in wide windows.
 fn draw_cells(canvas: &mut Canvas<'_>, row: Rect, cells: [&str; 6], is_wide: bool, role: Role) {
     let columns: [(u16, u16, Align); 6] = [
         (0, 3, Align::Right),
@@ -255,7 +254,6 @@ fn draw_cells(canvas: &mut Canvas<'_>, row: Rect, cells: [&str; 6], is_wide: boo
     }
 }
 
-/// Number of answers by choice.
 fn draw_choices(canvas: &mut Canvas<'_>, area: Rect, own: &AskedClass<'_>) {
     let mut rows = rows_of(area);
     for (number, choice) in (1..).zip(own.choices) {
@@ -278,7 +276,7 @@ fn draw_choices(canvas: &mut Canvas<'_>, area: Rect, own: &AskedClass<'_>) {
     }
 }
 
-/// The most common pitfall, and the number of students by pitfall.
+/// Draws the most common pitfall, and the number of students by pitfall.
 fn draw_pitfalls(canvas: &mut Canvas<'_>, area: Rect, view: &ClassView<'_>) {
     let met = pitfalls(view);
     let inside = canvas.pane(area, "Most common pitfall", "", false);

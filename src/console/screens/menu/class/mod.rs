@@ -8,7 +8,6 @@ use crate::action::Action;
 use novamind_course::CollectedClass;
 use novamind_report::class::{ClassView, RankedStudent, Shown, asked, decisions, figures, ranked};
 
-/// Rows of a page when scrolling.
 const PAGE: usize = 10;
 
 /// Pane below the curves in a small window.
@@ -19,7 +18,6 @@ enum Below {
     Pitfalls,
 }
 
-/// The page of a class.
 pub(super) struct ClassPage {
     class: CollectedClass,
     shown: Shown,
@@ -51,12 +49,11 @@ impl ClassPage {
         self.shown.lit = lit.or(self.shown.lit.take());
     }
 
-    /// Rank of the selected student.
+    /// Returns the rank of the selected student.
     fn lit(&self, ranking: &[RankedStudent<'_>]) -> Option<usize> {
         ranking.iter().position(|student| Some(student.label) == self.shown.lit.as_deref())
     }
 
-    /// Footer actions.
     pub(super) fn hints(&self) -> Vec<Action> {
         // The key to close the page is visible in the narrowest window, too.
         let mut hints = vec![Action::Down, Action::ClassDecision, Action::ClassFigure, Action::HideNames];
@@ -66,13 +63,12 @@ impl ClassPage {
         hints
     }
 
-    /// Number of answered questions of the part.
+    /// Returns the number of answered questions of the part.
     fn questions(&self) -> usize {
         let view = self.view();
         asked(&view).iter().filter(|own| own.part == self.part && !own.answers.is_empty()).count()
     }
 
-    /// Runs an action.
     pub(super) fn act(&mut self, action: Action) {
         match action {
             Action::HideNames => self.shown.hides_names = !self.shown.hides_names,
@@ -123,7 +119,7 @@ impl ClassPage {
     }
 }
 
-/// The next name, cyclically; `None` if there are no names.
+/// Returns the next name, cyclically; `None` if there are no names.
 fn next_of(all: &[String], now: Option<&String>) -> Option<String> {
     let at = all.iter().position(|own| Some(own) == now);
     all.get(at.map_or(0, |at| (at + 1) % all.len())).cloned()

@@ -59,9 +59,9 @@ fn a_hand_out_is_opened_from_the_start_menu_and_gone_on_with() {
     class(&folder, 2);
     let mut console = Console::start(&runs, SMALL);
     choose(&mut console, "Handout");
-    console.shows("File of the hand-out");
+    console.shows("Handout file");
     console.press("enter");
-    console.shows("type a path");
+    console.shows("Type a path");
     enter(&mut console, "nothing.nm");
     console.shows("nothing.nm");
     assert!(console.app.run().is_none());

@@ -245,7 +245,7 @@ fn a_group_is_studied_and_one_walks_between_its_report_and_its_customers() {
     console.press("enter");
     console.shows("S2 · individual");
     console.press("end up enter");
-    console.shows("a study to level 3 is due on day 5");
+    console.shows("study to level 3 due on day 5");
     console.press("backspace");
     console.shows("S2 · individual");
     console.press("7 m y");

@@ -99,7 +99,7 @@ fn lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine>
         bar_line(fit, (plan, Concern::Price), (name, &price_to_cents(own.price)), (fit.budget, &prices), width)
     }));
     let smallest = if company { " (smallest)" } else { "" };
-    lines.push(line(format!("quota    typical use {}{smallest} units a day", fit.usage.units()), Role::Header));
+    lines.push(line(format!("quota    usage {} units a day{smallest}", fit.usage.units()), Role::Header));
     let quotas = Plan::ALL.map(|plan| format!("{plan} {}", compact(fit.plans[plan].quota)));
     lines.push(line(format!(" {} a day", quotas.join(" · ")), worst(fit, Concern::Quota)));
     let mut told = |name: &str, text: &str, role: Role| {
@@ -113,7 +113,7 @@ fn lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine>
             told("leads", &format!("last week: {}", week.in_words()), Role::Text);
             told("", &format!("last 4 weeks: {}", fit.recent.in_words()), Role::Text);
         }
-        None => told("leads", "no week has run", Role::Dim),
+        None => told("leads", "no week has been simulated", Role::Dim),
     }
     for plan in Plan::ALL {
         let name = if plan == Plan::A { "missing" } else { "" };

@@ -93,7 +93,7 @@ pub fn columns() -> Vec<Column> {
     let mut columns = vec![Column::words("group"), Column::words("name").at_most(28).at_least(20)];
     columns.extend(["level", "error"].map(Column::numbers));
     columns.push(Column::words("next study"));
-    columns.extend(["found", "figures of"].map(Column::numbers));
+    columns.extend(["found", "as of"].map(Column::numbers));
     columns
 }
 

@@ -56,7 +56,7 @@ const ESTIMATES: [Estimate; 8] = [
     (|all| Some(all.annual_market_cap_growth_rate), "market growth", "a year", share),
     (|all| Some(all.contract_lockin_aversion), "lock-in aversion", "", exact),
     (|all| all.decision_rounds.map(|rounds| rounds as f64), "rounds per deal", "", figure),
-    (|all| all.avg_response_days, "days to an answer", "", figure),
+    (|all| all.avg_response_days, "response time, days", "", figure),
 ];
 
 /// Other screens show a range for it, too.

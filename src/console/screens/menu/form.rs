@@ -137,12 +137,12 @@ impl RunForm {
             field.text().trim().is_empty() || parse_number(field.text()).is_some_and(fits)
         };
         match row {
-            2 if !whole(&self.seed, 0.0) => Some("a whole number of at least 0"),
-            3 if !whole(&self.days, 7.0) => Some("a whole number of at least 7"),
+            2 if !whole(&self.seed, 0.0) => Some("enter a whole number of at least 0"),
+            3 if !whole(&self.days, 7.0) => Some("enter a whole number of at least 7"),
             4 if !self.cash.text().trim().is_empty()
                 && parse_number(self.cash.text()).is_none_or(|cash| cash <= 0.0) =>
             {
-                Some("dollars above 0, such as 500k")
+                Some("enter dollars above 0, such as 500k")
             }
             _ => None,
         }

@@ -224,7 +224,7 @@ fn the_form_says_what_is_wrong_while_it_is_typed() {
     menu.act(Action::NewRun);
     menu.form.at = 3;
     type_text(&mut menu, "3");
-    assert!(shown(&menu, 80, 23).contains("! a whole number of at least 7"));
+    assert!(shown(&menu, 80, 23).contains("! enter a whole number of at least 7"));
     menu.form.at = ROWS.len() - 1;
     assert!(menu.act(Action::Open).is_empty() && menu.form.at == 3, "the form selects the invalid row");
     type_text(&mut menu, "0");

@@ -86,7 +86,7 @@ fn threads(company: &Company) -> Vec<String> {
     if company.seen.waiting.is_empty() {
         return Vec::new();
     }
-    let mut lines = vec!["customer  group   seats  thread            asks         days left  company".to_owned()];
+    let mut lines = vec!["customer  group   seats  thread            asks         days left  enterprise".to_owned()];
     lines.extend(company.seen.waiting.iter().map(|thread| {
         let asks = thread.asked.map_or("–".to_owned(), cents);
         format!(

@@ -7,9 +7,9 @@ use ratatui::symbols::Marker;
 use super::model::{Amounts, Books, CATEGORIES, COUNT, money, side};
 use super::{Cash, ledger_rows, week_keys};
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_tui::canvas::{Align, Canvas, Click, fit};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Unit;
@@ -309,11 +309,7 @@ mod tests {
         (amounts[0], amounts[1]) = (90.0, 40.0);
         let income = parts(&amounts, true, &scale, 3);
         assert_eq!(in_row(&income, 0), Some((0, 8, None)));
-        assert_eq!(
-            in_row(&income, 1),
-            Some((1, 5, None)),
-            "the empty part leaves one color for the cell"
-        );
+        assert_eq!(in_row(&income, 1), Some((1, 5, None)), "the empty part leaves one color for the cell");
         assert_eq!(in_row(&income, 2), None);
         (amounts[3], amounts[4], amounts[5], amounts[6]) = (-20.0, -10.0, -45.0, -500.0);
         let costs = parts(&amounts, false, &scale, 3);

@@ -5,9 +5,9 @@ use unicode_width::UnicodeWidthStr;
 
 use super::Cash;
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{percent, short_dollars};
 use novamind_session::{ScoredForecast, Verdict, filed_forecasts};
 use novamind_tui::canvas::Canvas;
@@ -60,7 +60,10 @@ impl Pane<Cash> for ForecastsPane {
     fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
         let (outlook, inside) = (&cash.outlook, seat.area);
         if outlook.all.is_empty() {
-            let text = format!("No forecasts yet. You file four before each week ({}).", look.hint(Action::NextWeek));
+            let text = format!(
+                "No forecasts yet. You file four before each week ({}).",
+                look.hint(Action::NextWeek)
+            );
             canvas.text(inside, &text, Role::Dim);
             return;
         }

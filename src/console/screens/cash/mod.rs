@@ -15,10 +15,10 @@ use strum::VariantArray;
 use self::books::table_of;
 use self::forecasts::Outlook;
 use self::model::{Books, CashStep, Subject, statement, waterfall};
-use super::panes::{Pane, Paned, draw_pane};
-use crate::context::{Figure, Look};
 use super::ScreenState;
+use super::panes::{Pane, Paned, draw_pane};
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use novamind_insight::WeekQuantity;
 use novamind_tui::canvas::Canvas;
@@ -119,7 +119,8 @@ impl Cash {
             (from, to) => format!("weeks {from} to {to}"),
         };
         let title = format!("{} of {weeks}", subject.name());
-        let figure = Figure { title, term: subject.term(), sql: Some(statement(&subject, (from, to))), why: None };
+        let figure =
+            Figure { title, term: subject.term(), sql: Some(statement(&subject, (from, to))), why: None };
         let quantity = subject.figure().and_then(WeekQuantity::of_company);
         // Purchases since the last week belong to a week that has not been simulated.
         Some(figure.of_week(quantity.filter(|_| to <= self.books.last()), to))

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use novamind_worker::company::Company;
 use novamind_base::notation::grouped;
-use novamind_report::category_name;
 use novamind_record::figures::{Booked, WeekFigure};
+use novamind_report::category_name;
 use novamind_session::{Category, entries_of_weeks, week_of};
+use novamind_worker::company::Company;
 
 #[derive(Debug, PartialEq, Eq)]
 pub struct Shown {
@@ -169,8 +169,13 @@ pub fn waterfall(books: &Books, company: &Company, week: u32, most: usize) -> Ve
         let (left, right) = (order(left), order(right));
         left.0.cmp(&right.0).then(left.1.total_cmp(&right.1))
     });
-    let level =
-        |name: String, cash: f64| CashStep { name, from: cash, to: cash, is_level: true, subject: Subject::Net };
+    let level = |name: String, cash: f64| CashStep {
+        name,
+        from: cash,
+        to: cash,
+        is_level: true,
+        subject: Subject::Net,
+    };
     let mut steps = vec![level(format!("day {}", 7 * (week - 1)), before)];
     let mut cash = before;
     let room = most.saturating_sub(2).max(1);

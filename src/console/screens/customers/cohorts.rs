@@ -7,9 +7,9 @@ use ratatui::layout::Rect;
 use super::Customers;
 use super::steps::show_rows;
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, percent};
 use novamind_database::{Rows, number_at, text_at};
 use novamind_session::identifiers::Group;
@@ -169,8 +169,9 @@ impl CohortPlace {
              AND (s.status = 'subscribed' OR min(s.end_day, (SELECT max(day) FROM service_day)) > {})",
             7 * until
         );
-        let title =
-            format!("{kept} of the {group} customers of week {week} were subscribed at the end of week {until}");
+        let title = format!(
+            "{kept} of the {group} customers of week {week} were subscribed at the end of week {until}"
+        );
         Some(Figure { title, term: "cohort", sql: Some(sql), why: None })
     }
 }

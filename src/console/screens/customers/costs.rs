@@ -5,9 +5,9 @@ use ratatui::layout::Rect;
 
 use super::Customers;
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{cents, dollars, grouped};
 use novamind_report::lead_costs::{AdSpell, PairCost};
 use novamind_session::identifiers::{Channel, Group};

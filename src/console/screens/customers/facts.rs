@@ -6,10 +6,10 @@ use super::Customers;
 use super::model::{CustomerFacts, MarketRows, ad_budgets, development_budget};
 use super::steps::show_rows;
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::market::model::name_of;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{cents, compact, dollars, grouped, percent};
 use novamind_session::identifiers::{Group, Plan};
 use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
@@ -105,7 +105,13 @@ fn fact(words: String, figures: String, title: String, term: &'static str, sql: 
 }
 
 /// Returns the lines of a group; bars are `bars` cells wide.
-fn facts(company: &Company, market: &MarketRows, facts: &CustomerFacts, group: Group, bars: usize) -> Vec<Fact> {
+fn facts(
+    company: &Company,
+    market: &MarketRows,
+    facts: &CustomerFacts,
+    group: Group,
+    bars: usize,
+) -> Vec<Fact> {
     // Money comes last: small windows cut the end, and it changes least.
     let mut lines = companies(company, group);
     lines.extend(plans(facts, group, bars));
@@ -206,14 +212,19 @@ fn money(company: &Company, market: &MarketRows, facts: &CustomerFacts, group: G
     let rows = |figure: &Option<Figure>| figure.as_ref().and_then(|figure| figure.sql.clone());
     for (name, value, term, sql) in [
         ("revenue a month", dollars(facts.sum(|held| held.monthly)), "mrr", rows(&revenue)),
-        (if group.is_enterprise() { "per seat" } else { "per subscriber" }, or_none(facts.revenue_per_seat(), cents), "arpu", rows(&revenue)),
+        (
+            if group.is_enterprise() { "per seat" } else { "per subscriber" },
+            or_none(facts.revenue_per_seat(), cents),
+            "arpu",
+            rows(&revenue),
+        ),
         ("30-day churn", or_none(facts.churn(), |share| percent(share, 1)), "churn", rows(&churn)),
         ("ads per day", dollars(ad_budgets(company, group)), "set_targeted_ad_spend", None),
         ("ads, 28 days", dollars(market.ad_spend(group)), "ad_channel_leads.spend", Some(spend)),
         ("development per day", dollars(development_budget(company, group)), "set_targeted_dev_spend", None),
     ] {
         lines.push(fact(format!("  {name}"), value, format!("{name} of {group}"), term, sql));
- // Uses the query of the churn column.
+        // Uses the query of the churn column.
         if let Some(Fact { figure: Some(figure), .. }) = lines.last_mut().filter(|_| term == "churn") {
             figure.why = explained;
         }

@@ -5,14 +5,14 @@ use ratatui::layout::Rect;
 use super::Customers;
 use super::steps::{moved, show_rows};
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, percent, price_to_cents};
+use novamind_insight::WeekQuantity;
+use novamind_record::figures::WeekFigure;
 use novamind_report::fit::{Beside, Concern, Fit, TruthRange};
 use novamind_session::identifiers::Plan;
-use novamind_record::figures::WeekFigure;
-use novamind_insight::WeekQuantity;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::text::{number, wrapped};
@@ -36,7 +36,8 @@ impl Pane<Customers> for FitPane {
         );
         let title = format!("fit of {group} and its leads by week");
         // Enterprises sign weeks after they arrive.
-        let quantity = WeekQuantity::of_group(WeekFigure::Conversion, group).filter(|_| !group.is_enterprise());
+        let quantity =
+            WeekQuantity::of_group(WeekFigure::Conversion, group).filter(|_| !group.is_enterprise());
         let figure = Figure { title, term: "fit", sql: Some(sql), why: None };
         Some(figure.of_week(quantity, look.company.seen.week))
     }
@@ -96,7 +97,13 @@ fn lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine>
     lines.extend(Plan::ALL.map(|plan| {
         let own = &fit.plans[plan];
         let name = if own.price < own.list { "lead" } else { "list" };
-        bar_line(fit, (plan, Concern::Price), (name, &price_to_cents(own.price)), (fit.budget, &prices), width)
+        bar_line(
+            fit,
+            (plan, Concern::Price),
+            (name, &price_to_cents(own.price)),
+            (fit.budget, &prices),
+            width,
+        )
     }));
     let smallest = if company { " (smallest)" } else { "" };
     lines.push(line(format!("quota    usage {} units a day{smallest}", fit.usage.units()), Role::Header));

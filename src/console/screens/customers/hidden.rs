@@ -1,11 +1,11 @@
 //! True values of groups in the table, if the x-ray is open.
 
-use novamind_worker::company::Company;
 use novamind_base::notation::grouped;
 use novamind_insight::TrueGroup;
 use novamind_session::identifiers::Group;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Cell;
+use novamind_worker::company::Company;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TrueValue {
@@ -39,9 +39,7 @@ impl TrueValue {
         match self {
             TrueValue::Satisfaction => own.satisfaction.map(|value| (value, grouped(value, 3))),
             TrueValue::Reputation => Some((own.reputation, grouped(own.reputation, 3))),
-            TrueValue::Leads => {
-                own.is_known.then(|| (own.expected_leads, grouped(own.expected_leads, 1)))
-            }
+            TrueValue::Leads => own.is_known.then(|| (own.expected_leads, grouped(own.expected_leads, 1))),
             TrueValue::Market => Some(match own.market_cap {
                 cap if cap > 0.0 => (cap, grouped(cap, 0)),
                 _ => (f64::INFINITY, "no limit".to_owned()),

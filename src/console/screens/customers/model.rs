@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
+use novamind_database::{Rows, number_at, text_at};
+use novamind_session::identifiers::{Channel, Group, Plan};
+use novamind_tools::ToolId;
 use novamind_worker::company::Company;
 use novamind_worker::readings::Reading;
-use novamind_database::{Rows, number_at, text_at};
-use novamind_tools::ToolId;
-use novamind_session::identifiers::{Channel, Group, Plan};
 
 pub const WEEKS: u32 = 12;
 
@@ -193,7 +193,11 @@ impl MarketRows {
         }
     }
 
-    fn take_held(&mut self, row: &[novamind_database::Cell], take: impl Fn(&mut Held, &[novamind_database::Cell])) {
+    fn take_held(
+        &mut self,
+        row: &[novamind_database::Cell],
+        take: impl Fn(&mut Held, &[novamind_database::Cell]),
+    ) {
         let (group, plan) = (Group::parse(text_at(row, 0)), Plan::parse(text_at(row, 1)));
         if let (Some(group), Some(plan)) = (group, plan) {
             let facts = self.groups.entry(group).or_default();

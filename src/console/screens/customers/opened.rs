@@ -8,8 +8,8 @@ use super::fit::FitPane;
 use super::quality::QualityByWeekPane;
 use super::ways::CHOICES;
 use super::{Customers, CustomersPane};
-use crate::screens::panes::{Pane, Seat, draw_pane};
 use crate::context::Look;
+use crate::screens::panes::{Pane, Seat, draw_pane};
 use novamind_tui::canvas::Canvas;
 
 #[derive(Debug)]

@@ -4,8 +4,8 @@ use ratatui::layout::Rect;
 
 use super::Customers;
 use crate::action::Action;
-use crate::screens::panes::{Border, Pane, Seat};
 use crate::context::{Figure, Look};
+use crate::screens::panes::{Border, Pane, Seat};
 use novamind_session::identifiers::{Group, Plan};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;

@@ -1,8 +1,8 @@
 //! Keys shared by the panes of an open group: movement, and opening the rows behind a figure.
 
 use crate::action::Action;
-use crate::effect::Effect;
 use crate::context::Figure;
+use crate::effect::Effect;
 
 /// Returns the index in a list after a movement.
 pub fn moved(at: usize, last: usize, action: Action) -> usize {

@@ -5,11 +5,11 @@ use ratatui::layout::Rect;
 use super::Customers;
 use super::steps::{moved, show_rows};
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::market::model::level_of;
 use crate::screens::market::report;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::percent;
 use novamind_tui::canvas::Canvas;
 
@@ -39,7 +39,11 @@ impl Pane<Customers> for StudyPane {
         customers.group(look.company).map_or_else(Border::default, |group| {
             let level = level_of(look.company, group);
             let noise = look.company.terms.level(level).map_or(0.0, |level| level.noise);
-            let note = format!("study level {level} · ±{} · {}", percent(noise, 0), report::studied(look.company, group));
+            let note = format!(
+                "study level {level} · ±{} · {}",
+                percent(noise, 0),
+                report::studied(look.company, group)
+            );
             Border { title: format!("Study of {group}"), note, ..Border::default() }
         })
     }

@@ -7,12 +7,12 @@ use super::model::{self, CustomerFacts, Flow};
 use super::steps::{moved, show_rows};
 use super::{Customers, CustomersPane};
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat, draw_framed};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, grouped};
-use novamind_record::figures::WeekFigure;
 use novamind_insight::WeekQuantity;
+use novamind_record::figures::WeekFigure;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::text::{arrow, count};
 use novamind_tui::theme::Role;
@@ -86,7 +86,10 @@ impl Pane<Customers> for WeeksPane {
         let lines = [
             Line::through(trend(|flow| flow.leads), Role::Series(2)).named("leads"),
             Line::through(trend(|flow| flow.signed), Role::Good).named("new"),
-            Line { scattered: true, ..Line::through(trend(|flow| flow.cancelled), Role::Bad).named("cancelled") },
+            Line {
+                scattered: true,
+                ..Line::through(trend(|flow| flow.cancelled), Role::Bad).named("cancelled")
+            },
         ];
         let mark = seat.focused.then(|| f64::from(self.week(customers, look)));
         plot(canvas, seat.area, &lines, mark, &[0.0]);
@@ -137,7 +140,11 @@ fn flow_words(facts: &CustomerFacts, week: u32, flow: usize, room: usize) -> Str
             arrow(now - before, &whole((now - before).abs()))
         );
     }
-    let full =
-        format!("{} · {} new · {} cancelled", count(now.leads, "lead"), whole(now.signed), whole(now.cancelled));
+    let full = format!(
+        "{} · {} new · {} cancelled",
+        count(now.leads, "lead"),
+        whole(now.signed),
+        whole(now.cancelled)
+    );
     if full.len() <= room { full } else { format!("+{} -{}", compact(now.signed), compact(now.cancelled)) }
 }

@@ -1,10 +1,10 @@
 //! Estimated compute cost of an enterprise's seats, from figures that the player can see.
 
 use super::model::Thread;
-use novamind_worker::company::Company;
 use novamind_rules::{Market, SeatUsage};
-use novamind_tools::ToolId;
 use novamind_session::identifiers::{Group, Plan};
+use novamind_tools::ToolId;
+use novamind_worker::company::Company;
 
 /// Days per month, as on the product screen.
 const MONTH: f64 = 30.0;

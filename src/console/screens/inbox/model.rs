@@ -2,11 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use novamind_worker::readings::Reading;
-use novamind_rules::{AskingThread, offer_of, plan_in};
 use novamind_database::{Rows, number_at, text_at};
+use novamind_rules::{AskingThread, offer_of, plan_in};
 use novamind_session::CompanyNames;
 use novamind_session::identifiers::Plan;
+use novamind_worker::readings::Reading;
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Turn {
@@ -235,7 +235,7 @@ fn threads_of(rows: &Rows) -> BTreeMap<u32, Thread> {
         thread.number = number;
         thread.customer = number_at(row, 1) as u32;
         thread.kind = text_at(row, 2).to_owned();
- // The player's rows have a seat count of 1.
+        // The player's rows have a seat count of 1.
         thread.seats = thread.seats.max(if text_at(row, 4) == "agent" { 1.0 } else { number_at(row, 8) });
         thread.turns.push(Turn {
             number: number_at(row, 3) as u32,

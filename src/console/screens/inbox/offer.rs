@@ -182,7 +182,11 @@ mod tests {
         offer.0[0].value = 90.0;
         offer.0[1] = Term { plan: TermChoice::Fixed(Plan::C), basis: Basis::Asked, value: 150.0 };
         assert_eq!(offer.to(&asking, LISTS), Ok(vec![(Plan::B, 28.8), (Plan::C, 30.02)]));
-        assert_eq!(offer.to(&silent, LISTS), Ok(vec![(Plan::B, 28.8)]), "a term without a reference price is left out");
+        assert_eq!(
+            offer.to(&silent, LISTS),
+            Ok(vec![(Plan::B, 28.8)]),
+            "a term without a reference price is left out"
+        );
         offer.0[2] = Term { plan: TermChoice::Fixed(Plan::C), ..UNUSED };
         assert!(offer.to(&asking, LISTS).is_err_and(|why| why.contains("plan C would be free")));
         assert!(Offer([UNUSED; 3]).to(&asking, LISTS).is_err_and(|why| why.contains("no plan")));

@@ -5,13 +5,13 @@ use ratatui::layout::Rect;
 
 use super::estimate::{Money, per_seat};
 use super::model::Thread;
-use super::offer::{TermChoice, Offer, TERMS};
+use super::offer::{Offer, TERMS, TermChoice};
 use super::post::{self, summary};
 use super::{Inbox, list_prices};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{cents, dollars, grouped, percent};
 use novamind_session::identifiers::Plan;
 use novamind_tui::canvas::{Canvas, Click, rows_of};

@@ -4,9 +4,9 @@ use ratatui::layout::Rect;
 
 use super::{Inbox, InboxPane};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::grouped;
 use novamind_database::{Rows, number_at, text_at};
 use novamind_tui::canvas::Canvas;
@@ -175,7 +175,8 @@ impl Pane<Inbox> for OutcomesPane {
 
     fn figure(&self, inbox: &Inbox, _: &Look<'_>) -> Option<Figure> {
         let own = inbox.outcomes.as_ref()?.here()?;
-        let title = format!("threads of {} with a first offer of {} in week {}", own.group, own.plan, own.week);
+        let title =
+            format!("threads of {} with a first offer of {} in week {}", own.group, own.plan, own.week);
         Some(Figure { title, term: "offer", sql: Some(statement(own)), why: None })
     }
 
@@ -209,7 +210,9 @@ impl Pane<Inbox> for OutcomesPane {
             None => "reading …".to_owned(),
             Some([]) => {
                 let send = look.keys.label(Action::SendOffer).unwrap_or_default();
-                format!("No new lead has been sent an offer yet. Send one with {send} in the list of threads.")
+                format!(
+                    "No new lead has been sent an offer yet. Send one with {send} in the list of threads."
+                )
             }
             Some(_) => return own.table.draw(canvas, seat.area, seat.focused, seat.number),
         };

@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 use super::model::{State, Thread};
 use super::offer::in_words;
 use super::{Inbox, list_prices};
-use crate::effect::Effect;
 use crate::context::Figure;
+use crate::effect::Effect;
 use novamind_base::notation::dollars;
 use novamind_session::identifiers::Plan;
 use novamind_tools::{Answer, DealResult, ToolId};
@@ -51,7 +51,9 @@ pub(super) fn usage_figure(thread: &Thread) -> Figure {
              FROM daily_usage u JOIN subscriptions s USING (customer_id) JOIN customers c USING (customer_id)\n\
              WHERE c.group_id = '{group}' AND s.status = 'subscribed'\n    \
              AND u.day = (SELECT max(day) FROM service_day) ORDER BY units DESC"
-        )), why: None }
+        )),
+        why: None,
+    }
 }
 
 /// Returns the maximum payment of an enterprise for an offer, $ per month.
@@ -157,7 +159,10 @@ impl Inbox {
         let what = if offered { "offered" } else { "ended" };
         match failed {
             0 => vec![Effect::Say(format!("{} {what}", done.len()))],
-            _ => vec![Effect::Complain(format!("{} {what}, {failed} rejected. Press 0 for the reasons.", done.len()))],
+            _ => vec![Effect::Complain(format!(
+                "{} {what}, {failed} rejected. Press 0 for the reasons.",
+                done.len()
+            ))],
         }
     }
 }

@@ -4,10 +4,10 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::layout::{Constraint, Layout, Rect};
 use serde_json::Value;
 
-use super::{Inbox, InboxPane};
 use super::estimate::market_of;
-use crate::effect::Effect;
+use super::{Inbox, InboxPane};
 use crate::context::Look;
+use crate::effect::Effect;
 use crate::screens::panes::{Border, Seat, draw_pane};
 use novamind_base::notation::{cents, json_number};
 use novamind_rules::{AskingThread, Batch, Problem, RuledThread};
@@ -138,7 +138,12 @@ impl Inbox {
     pub(super) fn rules_border(&self, look: &Look<'_>) -> Border {
         use crate::action::Action::{Discard, SendOffer};
         let keys = format!("{} · ctrl-n clear the line · {}", look.hint(SendOffer), look.hint(Discard));
-        Border { title: "Rules".to_owned(), note: "first match applies".to_owned(), keys, ..Border::default() }
+        Border {
+            title: "Rules".to_owned(),
+            note: "first match applies".to_owned(),
+            keys,
+            ..Border::default()
+        }
     }
 
     /// Draws the field, and a line for each rule or the error.
@@ -165,7 +170,13 @@ impl Inbox {
         Border { title, note: "rule: asked → sent".to_owned(), ..Border::default() }
     }
 
-    pub(super) fn draw_rules_preview(&self, ruling: &Ruling, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+    pub(super) fn draw_rules_preview(
+        &self,
+        ruling: &Ruling,
+        canvas: &mut Canvas<'_>,
+        seat: Seat,
+        look: &Look<'_>,
+    ) {
         let (inside, count) = (seat.area, ruling.meant().count());
         if seat.focused {
             canvas.page = inside.height.max(1);

@@ -6,10 +6,10 @@ use super::*;
 use crate::keys::Keys;
 use crate::screens::Screen;
 use crate::test_kit::{act, company, courted, drawn, shown, sweep};
-use novamind_session::identifiers::Plan;
 use novamind_database::{Cell as Datum, number_at};
 use novamind_record::trajectory::record::Via;
 use novamind_session::WaitingThread;
+use novamind_session::identifiers::Plan;
 use novamind_tools::{Answer, DealResult, DealResults, ToolId};
 use novamind_tui::chord::Chord;
 use novamind_worker::request::Request;
@@ -137,7 +137,7 @@ fn answered(screen: &mut Inbox, company: &mut Company, deals: &[Value]) {
 #[test]
 fn two_hundred_threads_are_worked_with_rules_in_under_forty_keys() {
     let (mut screen, mut company) = crowded_screen();
- // Offer subscribers 3 % more than they ask, and leads plan B at 90 % of the list price or C at 85 %.
+    // Offer subscribers 3 % more than they ask, and leads plan B at 90 % of the list price or C at 85 %.
     let (effects, mut keys) = press(&mut screen, &company, "/ 'reten' enter a t e '103' ctrl-s");
     let sent = deals(&effects);
     assert_eq!((sent.len(), &sent[0][1]), (66, &json!([["B", 20.6]])));
@@ -173,15 +173,26 @@ fn rules_answer_every_thread_after_one_confirmation() {
     // Leads of E1 are those with a number divisible by three; all of them have asked.
     assert_eq!(sizes, [(ToolId::SendEnterpriseDeal, 66), (ToolId::RejectEnterpriseDeal, 6)]);
     assert!(text.contains("128 left as they are"), "{text}");
-    assert_eq!(screen.answers_of_before(&company).as_ref(), Some(&(calls.clone(), text.clone())), "the rules are kept");
+    assert_eq!(
+        screen.answers_of_before(&company).as_ref(),
+        Some(&(calls.clone(), text.clone())),
+        "the rules are kept"
+    );
     press(&mut screen, &company, "esc R");
     for (width, height) in [(60, 13), (80, 21), (120, 37), (200, 57)] {
         let text = drawn(&screen, &company, width, height);
-        assert!(text.contains("seats<60"), "rules that were sent are shown again: {width}x{height} in\n{text}");
+        assert!(
+            text.contains("seats<60"),
+            "rules that were sent are shown again: {width}x{height} in\n{text}"
+        );
         assert!(text.contains("$20.00 → B $20.00"), "offer to an enterprise: {width}x{height} in\n{text}");
     }
     press(&mut screen, &company, "tab");
-    assert_eq!((screen.focus, screen.scopes()[0].is_text()), (InboxPane::Thread, false), "tab focuses the preview");
+    assert_eq!(
+        (screen.focus, screen.scopes()[0].is_text()),
+        (InboxPane::Thread, false),
+        "tab focuses the preview"
+    );
     press(&mut screen, &company, "R");
     assert_eq!((screen.focus, screen.scopes()[0].is_text()), (InboxPane::Offer, true), "R focuses the rules");
     let (effects, _) = press(&mut screen, &company, "ctrl-n 'ofer' ctrl-s");
@@ -259,7 +270,8 @@ fn pictures_hold_list_thread_offer_and_preview() {
     screen.focus_on(InboxPane::List);
     press(&mut screen, &company, "a / '1003' enter");
     let text = drawn(&screen, &company, 120, 37);
-    for words in ["#1003", "offered B $30.00", "At $20.00 for plan B", "formal", "asking price $20.00", "theirs"]
+    for words in
+        ["#1003", "offered B $30.00", "At $20.00 for plan B", "formal", "asking price $20.00", "theirs"]
     {
         assert!(text.contains(words), "{words} in\n{text}");
     }
@@ -273,11 +285,14 @@ fn without_threads_it_says_what_brings_companies() {
     for width in [80, 120, 200] {
         let text = drawn(&screen, &company, width, 37);
         assert!(
-            text.contains("No enterprise has asked for an offer yet") && text.contains("set_targeted_ad_spend"),
+            text.contains("No enterprise has asked for an offer yet")
+                && text.contains("set_targeted_ad_spend"),
             "{text}"
         );
     }
-    for action in [Action::SendOffer, Action::RejectOffer, Action::InboxRules].into_iter().chain(NEEDS_A_THREAD) {
+    for action in
+        [Action::SendOffer, Action::RejectOffer, Action::InboxRules].into_iter().chain(NEEDS_A_THREAD)
+    {
         assert!(matches!(&act(&mut screen, action, &company)[..], [Effect::Complain(_)]), "{action:?}");
     }
     sweep(&mut screen, &company);
@@ -294,7 +309,9 @@ fn a_real_company_is_answered_and_found_again() {
     assert!(screen.letters.firm(first.customer).is_some_and(|firm| firm.group == first.group));
     let [Effect::EditSql(sql)] = &act(&mut screen, Action::InboxSql, &before)[..] else { panic!("no query") };
     assert_eq!(session.query(sql).expect("rows").rows.len(), first.turns.len());
-    let [Effect::Request(Request::Call { tool, arguments })] = &act(&mut screen, Action::SendOffer, &before)[..] else {
+    let [Effect::Request(Request::Call { tool, arguments })] =
+        &act(&mut screen, Action::SendOffer, &before)[..]
+    else {
         panic!("no call")
     };
     session.call(tool, arguments, Via::Form).expect("sent");
@@ -406,7 +423,7 @@ fn outcomes_of_first_offers_are_those_that_the_turns_and_subscriptions_tell() {
         assert_eq!(number(&row[7]), count("AND deal.yes IS NULL AND status <> 'lead'"), "{row:?}");
         assert_eq!(number(&row[8]), count("AND deal.yes IS NULL AND status = 'lead'"), "{row:?}");
         threads += all;
- // The query for the row returns its threads.
+        // The query for the row returns its threads.
         OutcomesPane.table_mut(&mut screen).expect("a table").select(at);
         let sql = screen.figure(&look).and_then(|figure| figure.sql).expect("rows");
         let behind = session.query(&sql).expect("rows");
@@ -416,10 +433,14 @@ fn outcomes_of_first_offers_are_those_that_the_turns_and_subscriptions_tell() {
     let first = "SELECT count(DISTINCT thread_id) FROM enterprise_turns WHERE sender = 'agent' AND thread_type = 'new_lead'";
     assert_eq!(threads, number_at(&session.query(first).expect("a count").rows[0], 0));
     let led = act(&mut screen, Action::Open, &company);
-    assert!(matches!(&led[..], [Effect::RunSql(sql)] if sql == include_str!("../../../../assets/queries/first-offers.sql")));
+    assert!(
+        matches!(&led[..], [Effect::RunSql(sql)] if sql == include_str!("../../../../assets/queries/first-offers.sql"))
+    );
     for (width, height) in [(60, 13), (80, 21), (120, 37), (200, 57)] {
         let text = drawn(&screen, &company, width, height);
-        for words in ["y first offer and week", "$/seat", "threads", "signed", "share", &cells[0][6], "Your offer"] {
+        for words in
+            ["y first offer and week", "$/seat", "threads", "signed", "share", &cells[0][6], "Your offer"]
+        {
             assert!(text.contains(words), "{words} at {width}x{height} in\n{text}");
         }
     }
@@ -443,7 +464,11 @@ fn outcomes_stand_in_the_place_of_the_list_until_they_are_closed() {
         assert_eq!((screen.focus, Screen::depth(&screen)), (InboxPane::List, 0), "{closes}");
         press(&mut screen, &company, "O");
     }
-    screen.take(Reading::FirstOffers, &Rows::default(), &Look { company: &company, keys: &Keys::shipped(), page: 20 });
+    screen.take(
+        Reading::FirstOffers,
+        &Rows::default(),
+        &Look { company: &company, keys: &Keys::shipped(), page: 20 },
+    );
     assert!(drawn(&screen, &company, 60, 13).contains("No new lead has been sent an offer yet"));
     screen.show(7, &company);
     assert_eq!(screen.focus, InboxPane::List);
@@ -456,7 +481,8 @@ fn thousands_of_threads_are_marked_sent_and_followed_by_the_next_one() {
     assert_eq!(screen.marked.len(), 3_500);
     press(&mut screen, &company, "a");
     // The first half is sent while its first thread is selected; the list then shows the second half.
-    let (effects, _) = press(&mut screen, &company, "R ctrl-n 'offer\u{a0}where\u{a0}customer<2750:\u{a0}B\u{a0}85' ctrl-s");
+    let (effects, _) =
+        press(&mut screen, &company, "R ctrl-n 'offer\u{a0}where\u{a0}customer<2750:\u{a0}B\u{a0}85' ctrl-s");
     let [Effect::ConfirmCalls { calls, .. }] = &effects[..] else { panic!("{effects:?}") };
     let sent = calls[0].1["deals"].as_array().expect("deals").clone();
     assert_eq!(sent.len(), 1_749);

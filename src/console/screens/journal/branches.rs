@@ -4,13 +4,13 @@ use ratatui::layout::Rect;
 
 use super::{Journal, JournalPane};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::short_dollars;
+use novamind_insight::Kin;
 use novamind_report::first_change_in_words;
 use novamind_report::whatif::kin_line;
-use novamind_insight::Kin;
 use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;

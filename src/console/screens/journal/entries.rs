@@ -4,21 +4,21 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 
-use novamind_worker::company::Company;
 use novamind_base::notation::{compact, dollars, grouped, short_dollars, signed_dollars};
-use novamind_report::deals::deals_in_words;
-use novamind_report::parameters::{entry_in_words, since_in_words};
 use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::Reversal;
+use novamind_report::deals::deals_in_words;
+use novamind_report::parameters::{entry_in_words, since_in_words};
 use novamind_session::{CompanyNames, JournalEntry, ScoredForecast, naively, undone_calls};
 use novamind_tools::{Forecast, Kind, Spec};
 use novamind_tui::text::number;
 use novamind_tui::theme::Role;
+use novamind_worker::company::Company;
 
 /// A line of the journal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JournalLine {
-    /// Day.
+    /// Day of the run.
     pub day: u32,
     /// Summary in one line.
     pub text: String,
@@ -58,7 +58,9 @@ pub fn lines(company: &Company) -> Vec<JournalLine> {
     for entry in &company.journal {
         let Some(last) = groups.last_mut() else { continue };
         match entry {
-            JournalEntry::Call { .. } => last.calls.extend(of_call(entry, &mut settings, &undone, &company.names)),
+            JournalEntry::Call { .. } => {
+                last.calls.extend(of_call(entry, &mut settings, &undone, &company.names))
+            }
             JournalEntry::Parameter { day, key, old, new, from_day, .. } => {
                 last.calls.push(of_parameter(*day, key, [old, new], *from_day));
             }

@@ -4,9 +4,9 @@ use ratatui::layout::Rect;
 
 use super::Journal;
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
 

@@ -11,10 +11,10 @@ mod tests;
 use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
-use super::panes::{Pane, Paned, draw_pane};
-use crate::context::{Figure, Look};
 use super::ScreenState;
+use super::panes::{Pane, Paned, draw_pane};
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use novamind_insight::Kin;
 use novamind_tui::canvas::Canvas;
@@ -114,7 +114,12 @@ impl ScreenState for Journal {
                 Cell::number(f64::from(line.day), line.day.to_string()).role(Role::Dim),
                 Cell::words(line.text).role(line.role),
             ]);
-            self.figures.push(Figure { title: line.title.clone(), term: line.term, sql: line.sql, why: None });
+            self.figures.push(Figure {
+                title: line.title.clone(),
+                term: line.term,
+                sql: line.sql,
+                why: None,
+            });
             self.wholes.push((line.title, line.whole));
         }
         self.table.set_rows(rows);

@@ -5,8 +5,8 @@ use ratatui::layout::Rect;
 
 use super::{Journal, JournalPane};
 use crate::action::{Action, Scope};
-use crate::effect::Effect;
 use crate::context::Look;
+use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
 use novamind_tui::canvas::Canvas;
 

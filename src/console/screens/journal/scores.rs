@@ -4,9 +4,9 @@ use ratatui::layout::Rect;
 
 use super::{Journal, JournalPane};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{percent, short_dollars};
 use novamind_session::{ForecastScore, ScoredForecast, filed_forecasts};
 use novamind_tui::canvas::{Canvas, Click, rows_of};
@@ -31,7 +31,9 @@ pub fn figure(company: &Company, selected: usize) -> Option<Figure> {
              predicted_upper\nFROM predictions WHERE horizon_days = {horizon} AND submit_day + horizon_days <= {}\n\
              ORDER BY submit_day DESC",
             company.seen.day
-        )), why: None })
+        )),
+        why: None,
+    })
 }
 
 fn weeks(days: u32) -> String {
@@ -109,8 +111,14 @@ impl Pane<Journal> for ScoresPane {
             return;
         }
         if let Some(row) = rows.next() {
-            let head =
-                format!("{:<9}{:>8}{:>8}{:>12} {}", "due", "point", "actual", "error", weeks(score.horizon_days));
+            let head = format!(
+                "{:<9}{:>8}{:>8}{:>12} {}",
+                "due",
+                "point",
+                "actual",
+                "error",
+                weeks(score.horizon_days)
+            );
             canvas.text(row, &head, Role::Header);
         }
         for (row, outcome) in rows.zip(single) {

@@ -1,11 +1,11 @@
 use super::*;
 use crate::action::Scope;
-use novamind_worker::company::Company;
 use crate::keys::Keys;
 use crate::screens::Screen;
 use crate::test_kit::{company, picture, session, sweep};
-use novamind_record::trajectory::record::Via;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+use novamind_record::trajectory::record::Via;
+use novamind_worker::company::Company;
 use serde_json::json;
 
 fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {

@@ -3,13 +3,13 @@
 
 use ratatui::layout::Rect;
 
-use super::{Market, hidden};
 use super::model::Published;
 use super::news::RivalNews;
+use super::{Market, hidden};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::grouped;
 use novamind_session::ToolLimits;
 use novamind_tui::canvas::{Canvas, rows_of};
@@ -59,7 +59,9 @@ impl Pane<Market> for EconomyPane {
         Some(Figure {
             title: format!("PMI of day {day}"),
             term: "pmi",
-            sql: Some(format!("SELECT * FROM macroeconomic_conditions WHERE day = {day}")), why: None })
+            sql: Some(format!("SELECT * FROM macroeconomic_conditions WHERE day = {day}")),
+            why: None,
+        })
     }
 
     fn act(&self, market: &mut Market, action: Action, _: &Look<'_>) -> Vec<Effect> {
@@ -138,7 +140,13 @@ fn draw_nothing(canvas: &mut Canvas<'_>, area: Rect, view: &EconomyView<'_>, ter
 }
 
 /// Draws the curve by day of measurement, above two lanes with days of publication and news of competitors.
-fn draw_curve(canvas: &mut Canvas<'_>, area: Rect, company: &Company, view: &EconomyView<'_>, here: &Published) {
+fn draw_curve(
+    canvas: &mut Canvas<'_>,
+    area: Rect,
+    company: &Company,
+    view: &EconomyView<'_>,
+    here: &Published,
+) {
     let lanes = if area.height >= 9 { 2 } else { 0 };
     // The lane names need four columns left of the axis.
     let indent = if lanes > 0 { 2.min(area.width) } else { 0 };

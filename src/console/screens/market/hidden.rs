@@ -2,11 +2,11 @@
 
 use ratatui::layout::Rect;
 
+use novamind_base::notation::grouped;
+use novamind_insight::{HiddenValues, NextRivalMove};
 use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
-use novamind_base::notation::grouped;
-use novamind_insight::{HiddenValues, NextRivalMove};
 
 /// Returns the lines on competitors: quality that they have not copied yet, and their next move.
 pub fn of_rivals(hidden: &HiddenValues) -> Vec<String> {
@@ -23,7 +23,11 @@ fn next_move(next: Option<&NextRivalMove>) -> String {
     let Some(next) = next else { return "x-ray: competitors make no move before the end".to_owned() };
     match &next.made {
         Some(made) => {
-            format!("x-ray: the next move, on day {}, raised expectations by {}", next.day, grouped(made.boost, 4))
+            format!(
+                "x-ray: the next move, on day {}, raised expectations by {}",
+                next.day,
+                grouped(made.boost, 4)
+            )
         }
         None => format!(
             "x-ray: next move on day {}: {}, or {} of the uncopied quality if that is more",

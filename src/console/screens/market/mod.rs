@@ -16,15 +16,15 @@ use strum::VariantArray;
 
 use self::model::{MarketFacts, level_of, name_of, target_of, undiscovered};
 use self::news::RivalNews;
-use super::panes::{Pane, Paned, draw_pane};
-use crate::context::{Figure, Look, ScreenId};
 use super::ScreenState;
+use super::panes::{Pane, Paned, draw_pane};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look, ScreenId};
 use crate::effect::Effect;
 use novamind_base::notation::{dollars, grouped};
-use novamind_session::identifiers::Group;
 use novamind_database::Rows;
 use novamind_session::Preview;
+use novamind_session::identifiers::Group;
 use novamind_tools::{Answer, DiscoveryAttempt, ToolId};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
@@ -356,5 +356,7 @@ fn knowledge_of(group: Group, company: &Company, term: &'static str, what: &str)
     Some(Figure {
         title: format!("{what} {group}"),
         term,
-        sql: Some(format!("SELECT * FROM group_info_levels WHERE group_id = '{group}'")), why: None })
+        sql: Some(format!("SELECT * FROM group_info_levels WHERE group_id = '{group}'")),
+        why: None,
+    })
 }

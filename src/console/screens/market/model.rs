@@ -3,11 +3,11 @@
 
 use std::collections::BTreeMap;
 
-use novamind_worker::company::Company;
-use novamind_worker::readings::Reading;
 use novamind_database::{Cell, Rows, number_at, text_at};
 use novamind_session::RunningStudy;
 use novamind_session::identifiers::Group;
+use novamind_worker::company::Company;
+use novamind_worker::readings::Reading;
 
 /// Study level of a group, with dates.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

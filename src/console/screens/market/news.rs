@@ -6,14 +6,14 @@ use ratatui::layout::Rect;
 
 use super::{Market, hidden};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell, Column, Table};
 use novamind_worker::company::Company;
-use novamind_worker::posts::{PostKind, Post};
+use novamind_worker::posts::{Post, PostKind};
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct RivalNews {
@@ -56,7 +56,9 @@ impl Pane<Market> for RivalNewsPane {
         Some(Figure {
             title: format!("news #{number}"),
             term: if item.rival.is_some() { "competitor" } else { "press" },
-            sql: Some(format!("SELECT * FROM social_media_posts WHERE post_id = {number}")), why: None })
+            sql: Some(format!("SELECT * FROM social_media_posts WHERE post_id = {number}")),
+            why: None,
+        })
     }
 
     fn act(&self, market: &mut Market, action: Action, look: &Look<'_>) -> Vec<Effect> {

@@ -6,9 +6,9 @@ use unicode_width::UnicodeWidthStr;
 use super::model::{level_of, name_of, study_of, target_of};
 use super::{Market, MarketPane, knowledge_of};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, dollars, grouped, percent};
 use novamind_report::fit::{Fit, TruthRange};
 use novamind_session::identifiers::Group;
@@ -56,7 +56,7 @@ const ESTIMATES: [Estimate; 8] = [
     (|all| Some(all.annual_market_cap_growth_rate), "market growth", "a year", share),
     (|all| Some(all.contract_lockin_aversion), "lock-in aversion", "", exact),
     (|all| all.decision_rounds.map(|rounds| rounds as f64), "rounds per deal", "", figure),
-    (|all| all.avg_response_days, "response time, days", "", figure),
+    (|all| all.avg_response_days, "response time", "days", figure),
 ];
 
 /// Other screens show a range for it, too.
@@ -146,7 +146,8 @@ fn influence(lines: &mut Vec<ReportLine>, influence: &Influence, noise: f64, wri
         if links.is_empty() {
             lines.push(ReportLine::of(format!("  {words} no known group"), String::new()));
         }
-        lines.extend(links.iter().map(|(id, value)| ReportLine::of(format!("  {words} {id}"), range(*value))));
+        lines
+            .extend(links.iter().map(|(id, value)| ReportLine::of(format!("  {words} {id}"), range(*value))));
     }
 }
 

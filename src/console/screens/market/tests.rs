@@ -2,11 +2,11 @@ use std::sync::Arc;
 
 use super::*;
 use crate::keys::Keys;
-use novamind_worker::posts::PostKind;
 use crate::screens::Screen;
 use crate::test_kit::{act, asked, drawn, on_screen, played, shown};
 use novamind_record::trajectory::record::Via;
 use novamind_session::Session;
+use novamind_worker::posts::PostKind;
 
 fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
     let keys = Keys::shipped();
@@ -99,7 +99,7 @@ fn the_report_tells_estimates_and_what_the_truth_can_be() {
             assert!(text.contains(words), "{group} {words}: {text}");
         }
         assert_eq!(text.contains("smallest enterprise"), group.is_enterprise());
- // The budget range agrees with other screens, including rounding.
+        // The budget range agrees with other screens, including rounding.
         let budget = company.fit(*group).expect("a known group").budget.money().replace('$', "");
         assert!(text.contains(&budget), "{group} {budget}: {text}");
     }

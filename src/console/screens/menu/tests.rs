@@ -415,7 +415,10 @@ fn a_participant_agrees_or_nothing_begins() {
         assert!(screen.contains(part), "{part} is missing in\n{screen}");
     }
     assert!(!screen.contains("stop at any time"));
-    assert!(matches!(menu.act(Action::Agree)[..], [Effect::Complain(_)]), "the end of the text was not shown");
+    assert!(
+        matches!(menu.act(Action::Agree)[..], [Effect::Complain(_)]),
+        "the end of the text was not shown"
+    );
     (0..60).for_each(|_| drop(menu.act(Action::Down)));
     let end = shown(&menu, 80, 23);
     assert!(end.contains("You can stop at any time.") && end.contains("y I agree"), "{end}");

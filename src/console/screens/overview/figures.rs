@@ -2,9 +2,9 @@
 
 use crate::context::Figure;
 use novamind_base::notation::{dollars, grouped, percent};
+use novamind_insight::WeekQuantity;
 use novamind_record::figures::{WeekFigure, WeekFigures};
 use novamind_session::{WEEK_OF_ENTRY, entries_of_weeks};
-use novamind_insight::WeekQuantity;
 use novamind_tui::text::arrow;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell, Column, spark};
@@ -75,7 +75,14 @@ const DEALS: &str = "c.customer_type = 'large' AND s.status IN ('subscribed', 'c
 /// All figures in display order.
 pub static METRICS: [Metric; 22] = [
     metric("cash at week's end", "cash", |week| week.cash, dollars, true, RowsSource::Cash),
-    metric("recurring revenue", "mrr", |week| week.recurring_revenue, dollars, true, RowsSource::Active("TRUE")),
+    metric(
+        "recurring revenue",
+        "mrr",
+        |week| week.recurring_revenue,
+        dollars,
+        true,
+        RowsSource::Active("TRUE"),
+    ),
     metric(
         "payments",
         "payments",
@@ -183,7 +190,14 @@ pub static METRICS: [Metric; 22] = [
         false,
         RowsSource::Service("downtime_minutes"),
     ),
-    metric("latency, peak ms", "latency", |week| week.p95_ms_peak, whole, false, RowsSource::Service("p95_ms")),
+    metric(
+        "latency, peak ms",
+        "latency",
+        |week| week.p95_ms_peak,
+        whole,
+        false,
+        RowsSource::Service("p95_ms"),
+    ),
     metric(
         "error rate, peak",
         "error-rate",
@@ -193,7 +207,14 @@ pub static METRICS: [Metric; 22] = [
         RowsSource::Service("error_rate"),
     ),
     metric("open issues", "issue", |week| f64::from(week.open_issues), whole, false, RowsSource::None),
-    metric("enterprises lost", "churn", |week| f64::from(week.companies_lost), whole, false, RowsSource::None),
+    metric(
+        "enterprises lost",
+        "churn",
+        |week| f64::from(week.companies_lost),
+        whole,
+        false,
+        RowsSource::None,
+    ),
 ];
 
 /// Returns the columns of the table; narrow windows drop the last ones first.
@@ -263,7 +284,9 @@ pub fn figure(metric: &Metric, column: usize, company: &Company) -> Figure {
     Figure {
         title: format!("{}, {weeks}", metric.name),
         term: metric.term,
-        sql: statement(&metric.source, (from, to), now), why: None }
+        sql: statement(&metric.source, (from, to), now),
+        why: None,
+    }
     .of_week(quantity, to)
 }
 

@@ -16,11 +16,11 @@ use strum::VariantArray;
 
 use self::figures::METRICS;
 use self::news::NewsItem;
+use super::ScreenState;
 use super::panes::{Pane, Paned, draw_pane};
 use super::product::model::{Day, projects, service};
-use crate::context::Look;
-use super::ScreenState;
 use crate::action::Action;
+use crate::context::Look;
 use novamind_database::Rows;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;

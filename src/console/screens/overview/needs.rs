@@ -5,14 +5,14 @@ use ratatui::layout::Rect;
 use super::Overview;
 use super::rows::{self, LinkedRow, walk};
 use crate::action::Action;
+use crate::context::{Figure, Look, ScreenId};
 use crate::effect::Effect;
 use crate::screens::customers::costs;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look, ScreenId};
-use novamind_report::needs::{Need, Place, Problem};
-use novamind_record::figures::WeekFigure;
-use novamind_session::entries_of_weeks;
 use novamind_insight::WeekQuantity;
+use novamind_record::figures::WeekFigure;
+use novamind_report::needs::{Need, Place, Problem};
+use novamind_session::entries_of_weeks;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_worker::company::Company;
@@ -137,9 +137,7 @@ pub fn figure_of(need: &Need, day: u32) -> Figure {
         Problem::NoLeads => ("lead", None),
         Problem::NoSales(group) => ("conversion", Some(leads_of(group.id()))),
         Problem::Unwanted(group) => ("delivered-quality", Some(leads_of(group.id()))),
-        Problem::LeadCost(channel, group) => {
-            ("cost-per-lead", Some(costs::statement(channel, group)))
-        }
+        Problem::LeadCost(channel, group) => ("cost-per-lead", Some(costs::statement(channel, group))),
         Problem::Margin => ("gross-margin", None),
         Problem::Overload | Problem::Capacity => {
             ("overload", Some(days("day, total_usage_units, capacity_units, capacity_tier")))

@@ -5,10 +5,10 @@ use ratatui::layout::Rect;
 use super::Overview;
 use super::rows::{self, LinkedRow, walk};
 use crate::action::Action;
+use crate::context::{Figure, Look, ScreenId};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
 use crate::screens::product::model::Project;
-use crate::context::{Figure, Look, ScreenId};
 use novamind_base::notation::grouped;
 use novamind_database::{Rows, text_at};
 use novamind_tui::canvas::Canvas;
@@ -95,7 +95,9 @@ impl NewsItem {
             NewsKind::Study => {
                 ("info-level", "SELECT *\nFROM group_info_levels\nWHERE info_level > 0".to_owned())
             }
-            NewsKind::Economy => ("pmi", "SELECT *\nFROM macroeconomic_conditions\nORDER BY day DESC".to_owned()),
+            NewsKind::Economy => {
+                ("pmi", "SELECT *\nFROM macroeconomic_conditions\nORDER BY day DESC".to_owned())
+            }
             NewsKind::Posts | NewsKind::Press => (
                 if self.kind == NewsKind::Press { "press" } else { "post" },
                 format!(
@@ -163,7 +165,10 @@ pub fn of_posts(company: &Company) -> Vec<NewsItem> {
     }
     if press > 0 {
         let noun = if press == 1 { "news item" } else { "news items" };
-        items.push(NewsItem { kind: NewsKind::Press, text: format!("{press} {noun} on competitors and the economy") });
+        items.push(NewsItem {
+            kind: NewsKind::Press,
+            text: format!("{press} {noun} on competitors and the economy"),
+        });
     }
     items
 }

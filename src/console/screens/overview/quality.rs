@@ -5,9 +5,9 @@ use unicode_width::UnicodeWidthStr;
 
 use super::Overview;
 use crate::action::Action;
+use crate::context::{Figure, Look, ScreenId};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look, ScreenId};
 use novamind_report::fit::Beside;
 use novamind_session::DeliveredQuality;
 use novamind_session::identifiers::Plan;
@@ -98,7 +98,8 @@ pub fn table_of(company: &Company) -> (Vec<Column>, Vec<Vec<Cell>>) {
         });
         let none = || Cell::words("–").role(Role::Dim);
         let floor = fit.map_or_else(none, |fit| Cell::number(fit.floor.least, fit.floor.quality()));
-        let as_of = fit.map_or_else(none, |fit| Cell::number(f64::from(fit.as_of), format!("day {}", fit.as_of)));
+        let as_of =
+            fit.map_or_else(none, |fit| Cell::number(f64::from(fit.as_of), format!("day {}", fit.as_of)));
         let name = [Cell::words(quality.group.id()).role(Role::Strong)];
         name.into_iter().chain(plans).chain([floor, as_of, bonus]).collect()
     };

@@ -7,13 +7,13 @@ use ratatui::layout::Rect;
 use super::model::Ages;
 use super::part::{ProductPart, cell};
 use super::{Product, ProductPane};
-use crate::effect::Effect;
 use crate::context::Figure;
+use crate::effect::Effect;
 use crate::screens::panes::Seat;
 use novamind_base::notation::grouped;
-use novamind_session::identifiers::Group;
-use novamind_record::figures::WeekFigure;
 use novamind_insight::WeekQuantity;
+use novamind_record::figures::WeekFigure;
+use novamind_session::identifiers::Group;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::theme::Role;
@@ -92,8 +92,7 @@ fn draw(product: &Product, canvas: &mut Canvas<'_>, seat: Seat) {
     }
     let below = Rect { y: area.y + 1, height: area.height - 1, ..area };
     let Some(issues) = product.issues.as_ref().filter(|issues| !issues.is_empty()) else {
-        let words =
-            if product.issues.is_some() { "No open issues" } else { "reading …" };
+        let words = if product.issues.is_some() { "No open issues" } else { "reading …" };
         return canvas.text(below, words, Role::Dim);
     };
     if area.width > FIGURES + 22 {

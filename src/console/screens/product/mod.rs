@@ -18,13 +18,13 @@ use strum::VariantArray;
 
 use self::model::{Ages, Day, PlanFacts, Project, ProjectOffer, Rung};
 use self::part::ProductPart;
+use super::ScreenState;
 use super::panes::{Pane, Paned, draw_pane};
 use crate::context::Look;
-use super::ScreenState;
-use novamind_report::plan_margins::Sales;
-use novamind_session::identifiers::Plan;
 use novamind_database::Rows;
+use novamind_report::plan_margins::Sales;
 use novamind_session::Category;
+use novamind_session::identifiers::Plan;
 use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::theme::Role;
 use novamind_worker::readings::Reading;

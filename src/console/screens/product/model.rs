@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use novamind_worker::company::Company;
-use novamind_report::plan_margins::{PlanUse, Sales};
 use novamind_database::{Rows, number_at, text_at};
 use novamind_record::figures::WeekFigures;
+use novamind_report::plan_margins::{PlanUse, Sales};
+use novamind_session::identifiers::Plan;
 use novamind_session::{Category, ResearchMeans};
 use novamind_tools::{CapacityTierFacts, ResearchTierFacts, ToolId};
-use novamind_session::identifiers::Plan;
+use novamind_worker::company::Company;
 
 /// A plan with its settings and revenue.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

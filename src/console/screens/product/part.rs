@@ -4,9 +4,9 @@ use ratatui::layout::Rect;
 
 use super::{Product, ProductPane};
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_tools::ToolId;
 use novamind_tui::canvas::Canvas;
 use novamind_worker::company::Company;

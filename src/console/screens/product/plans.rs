@@ -38,7 +38,10 @@ impl ProductPart for Plans {
         };
         let customers = each(|plan| grouped(plan.sold.customers, 0));
         if product.plans.iter().all(|plan| plan.margin().is_none()) {
-            return fitting([format!("no margin yet · customers {customers}"), "no margin yet".to_owned()], width);
+            return fitting(
+                [format!("no margin yet · customers {customers}"), "no margin yet".to_owned()],
+                width,
+            );
         }
         let margins = each(|plan| or_none(plan.margin(), |margin| percent(margin, 0)));
         let wordings = [

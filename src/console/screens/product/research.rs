@@ -5,8 +5,8 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use super::model::Project;
 use super::part::{ProductPart, tier};
 use super::{Product, ProductPane};
-use crate::effect::Effect;
 use crate::context::Figure;
+use crate::effect::Effect;
 use crate::screens::panes::Seat;
 use novamind_base::notation::{compact, dollars, short_dollars};
 use novamind_report::research::{mean_days, mean_gain};
@@ -77,7 +77,12 @@ impl ProductPart for Research {
         let (place, term) = (product.place(self.name()), "research-project");
         if let Some(project) = product.projects.get(place) {
             let sql = format!("SELECT * FROM research_projects WHERE project_id = '{}'", project.id);
-            return Some(Figure { title: format!("project {}", project.id), term, sql: Some(sql), why: None });
+            return Some(Figure {
+                title: format!("project {}", project.id),
+                term,
+                sql: Some(sql),
+                why: None,
+            });
         }
         let offer = product.offers.get(place - product.projects.len())?;
         let sql = "SELECT * FROM research_projects ORDER BY started_day DESC".to_owned();

@@ -5,9 +5,9 @@ use ratatui::layout::Rect;
 
 use super::{POST, Social, SocialPane};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat, draw_framed};
-use crate::context::{Figure, Look};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 

@@ -4,8 +4,8 @@ use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-pub use novamind_worker::posts::{PostKind, Post};
 use novamind_database::{Rows, number_at, text_at};
+pub use novamind_worker::posts::{Post, PostKind};
 
 /// Returns the player's posts from the database.
 pub fn own_posts(rows: &Rows) -> Vec<Arc<Post>> {
@@ -31,7 +31,7 @@ pub fn own_posts(rows: &Rows) -> Vec<Arc<Post>> {
 pub struct Filter {
     /// Kind of author.
     pub kind: Option<PostKind>,
-    /// Week.
+    /// Week of the posts.
     pub week: Option<u32>,
     /// Thread: the player's post, and the post that it answers.
     pub thread: Option<(u32, Option<u32>)>,

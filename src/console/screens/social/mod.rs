@@ -14,15 +14,15 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use serde_json::{Value, json};
 use strum::VariantArray;
 
-use self::feed::{Filter, PostKind, Post};
-use super::panes::{Pane, Paned, draw_pane};
-use crate::context::{Figure, Look, ScreenId};
+use self::feed::{Filter, Post, PostKind};
 use super::ScreenState;
+use super::panes::{Pane, Paned, draw_pane};
 use crate::action::Action;
+use crate::context::{Figure, Look, ScreenId};
 use crate::effect::Effect;
 use novamind_base::notation::grouped;
-use novamind_report::post_leads::leads_around;
 use novamind_database::Rows;
+use novamind_report::post_leads::leads_around;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, fit};
 use novamind_tui::theme::Role;
@@ -118,8 +118,9 @@ impl Social {
     fn read(&self, post: &Post, company: &Company) -> Effect {
         let mut parts = vec![post.text.clone()];
         if post.kind == PostKind::Own {
-            let of =
-                |comment: &&Arc<Post>| comment.kind == PostKind::Comments && comment.answers == Some(post.number);
+            let of = |comment: &&Arc<Post>| {
+                comment.kind == PostKind::Comments && comment.answers == Some(post.number)
+            };
             parts.extend(leads_around(post.day, &company.group_weeks, &company.seen.known_groups));
             let comments = self.all.iter().filter(of);
             parts.extend(comments.map(|comment| format!("↳ {}\n  {}", comment.head(), comment.text)));
@@ -173,7 +174,9 @@ impl Social {
                 self.write(Some(number));
                 Vec::new()
             }
-            None => vec![Effect::Complain("Select another author's post in the feed to answer it".to_owned())],
+            None => {
+                vec![Effect::Complain("Select another author's post in the feed to answer it".to_owned())]
+            }
         }
     }
 

@@ -4,9 +4,9 @@ use ratatui::layout::Rect;
 
 use super::Social;
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::grouped;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
@@ -40,7 +40,12 @@ impl Pane<Social> for OwnPane {
         let sql = format!(
             "SELECT post_id, day, content FROM social_media_posts WHERE reply_to_agent_post_id = {number}"
         );
-        Some(Figure { title: format!("comments on your post {number}"), term: "comment", sql: Some(sql), why: None })
+        Some(Figure {
+            title: format!("comments on your post {number}"),
+            term: "comment",
+            sql: Some(sql),
+            why: None,
+        })
     }
 
     fn act(&self, social: &mut Social, action: Action, look: &Look<'_>) -> Vec<Effect> {

@@ -4,13 +4,13 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::*;
 use crate::action::Scope;
-use novamind_worker::company::Company;
 use crate::keys::Keys;
 use crate::screens::Screen;
 use crate::test_kit::{act, asked, drawn, on_screen, played, shown, sweep};
 use novamind_record::trajectory::record::Via;
-use novamind_tools::Refusal;
 use novamind_session::Session;
+use novamind_tools::Refusal;
+use novamind_worker::company::Company;
 
 fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
     let keys = Keys::shipped();

@@ -2,7 +2,7 @@
 
 use unicode_width::UnicodeWidthStr;
 
-use super::feed::{PostKind, Post};
+use super::feed::{Post, PostKind};
 use crate::screens::panes::Seat;
 use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::text::wrapped;
@@ -97,7 +97,8 @@ fn rows_of_post(posts: &[&Post], place: usize, width: usize) -> Vec<FeedRow> {
     };
     rows.push(FeedRow { text: format!("{mark}{}", post.head()), role, place: Some(place) });
     let lines = wrapped(&post.text, width.saturating_sub(indent.len()));
-    let text = |line: String| FeedRow { text: format!("{indent}{line}"), role: Role::Text, place: Some(place) };
+    let text =
+        |line: String| FeedRow { text: format!("{indent}{line}"), role: Role::Text, place: Some(place) };
     rows.extend(lines.into_iter().map(text));
     rows
 }

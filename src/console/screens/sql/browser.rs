@@ -243,7 +243,10 @@ mod tests {
         browser.act(Action::Down, 5);
         assert_eq!(browser.selected().map(BrowserRow::name), Some("customer_id"));
         browser.act(Action::Left, 5);
-        assert_eq!((browser.entries().len(), browser.selected().map(BrowserRow::name)), (19, Some("customers")));
+        assert_eq!(
+            (browser.entries().len(), browser.selected().map(BrowserRow::name)),
+            (19, Some("customers"))
+        );
     }
 
     #[test]

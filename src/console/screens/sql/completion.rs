@@ -1,8 +1,8 @@
 //! Completion of SQL: columns of the tables in the statement, tables, keywords, functions.
 
-use novamind_tui::sql::{FUNCTIONS, KEYWORDS, LexemeKind, Token, is_word, statement_at, tokens};
 use novamind_database::catalogue::{Column, Table};
 use novamind_database::{table, tables};
+use novamind_tui::sql::{FUNCTIONS, KEYWORDS, LexemeKind, Token, is_word, statement_at, tokens};
 
 /// A suggestion.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -41,7 +41,9 @@ pub fn complete(sql: &str, place: usize, least: usize) -> Option<Completion> {
     let inside = |token: &&Token| token.place.start < place && place <= token.place.end;
     let here = pieces.iter().find(inside);
     let open_comment = |token: &Token| token.kind == LexemeKind::Comment;
-    if here.is_some_and(|token| matches!(token.kind, LexemeKind::Text | LexemeKind::Number) || open_comment(token)) {
+    if here.is_some_and(|token| {
+        matches!(token.kind, LexemeKind::Text | LexemeKind::Number) || open_comment(token)
+    }) {
         return None;
     }
     let before = &statement[..place];
@@ -160,7 +162,9 @@ fn sources(sql: &str, pieces: &[Token]) -> Vec<NamedTable> {
 fn own_names(sql: &str, pieces: &[Token]) -> Vec<String> {
     let text = |token: &Token| sql[token.place.clone()].to_owned();
     let names = pieces.windows(3).filter(|three| {
-        three[0].kind == LexemeKind::Name && text(&three[1]).eq_ignore_ascii_case("as") && text(&three[2]) == "("
+        three[0].kind == LexemeKind::Name
+            && text(&three[1]).eq_ignore_ascii_case("as")
+            && text(&three[2]) == "("
     });
     names.map(|three| text(&three[0])).collect()
 }

@@ -25,7 +25,9 @@ mod tests {
         for sql in ["SELECT * FROM hidden.groups", "select 1 from \"Hidden\" . drift", "x [hidden]/**/.pmi"] {
             assert!(names_hidden(sql), "{sql}");
         }
-        for sql in ["SELECT 'hidden.groups'", "SELECT hidden FROM x", "-- hidden.groups\nSELECT 1", "hidden", ""] {
+        for sql in
+            ["SELECT 'hidden.groups'", "SELECT hidden FROM x", "-- hidden.groups\nSELECT 1", "hidden", ""]
+        {
             assert!(!names_hidden(sql), "{sql}");
         }
     }

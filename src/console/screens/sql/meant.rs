@@ -27,7 +27,9 @@ impl RowsMeant {
         let text = filter.to_lowercase();
         let all: Vec<usize> = (0..held.columns.len()).filter(|at| is_exact(held, *at)).collect();
         let chosen = |columns: &[usize]| -> Vec<usize> {
-            let holds = |row: &Vec<Cell>| columns.iter().any(|at| row.get(*at).is_some_and(|cell| cell_holds(cell, &text)));
+            let holds = |row: &Vec<Cell>| {
+                columns.iter().any(|at| row.get(*at).is_some_and(|cell| cell_holds(cell, &text)))
+            };
             (0..held.rows.len()).filter(|at| holds(&held.rows[*at])).collect()
         };
         let mut expected = shown.to_vec();

@@ -25,22 +25,22 @@ use std::time::{Duration, Instant};
 use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
-use super::panes::{Pane, Paned, draw_pane};
-use crate::context::Look;
 use super::ScreenState;
+use super::panes::{Pane, Paned, draw_pane};
 use crate::action::Action;
+use crate::context::Look;
 use crate::effect::Effect;
 use browser::Browser;
 use editor::{QueryEditor, Statement};
-use history::History;
 use hidden::names_hidden;
-use over::Over;
-use tabs::Tabs;
+use history::History;
 use novamind_record::folder::library::Library;
 use novamind_record::trajectory::record::QuerySource;
 use novamind_tui::canvas::Canvas;
 use novamind_worker::asking::Pending;
 use novamind_worker::queries::{QueriedTables, Query};
+use over::Over;
+use tabs::Tabs;
 
 /// Panes in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

@@ -91,7 +91,9 @@ impl Picker {
         let last = self.found.len().saturating_sub(1);
         match action {
             Action::Commit => {
-                return self.chosen().map_or(PickedQuery::None, |item| PickedQuery::Statement(item.sql.clone()));
+                return self
+                    .chosen()
+                    .map_or(PickedQuery::None, |item| PickedQuery::Statement(item.sql.clone()));
             }
             Action::Discard => return PickedQuery::Closed,
             Action::CommitDown | Action::CommitNext | Action::Down => {

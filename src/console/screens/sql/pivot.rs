@@ -50,7 +50,8 @@ impl PivotChoice {
         };
         let is_real = |at: usize| held.rows.iter().any(|row| matches!(row.get(at), Some(Cell::Real(_))));
         let across = (0..held.columns.len()).filter(|at| !is_real(*at)).find(few);
-        let values = numeric.iter().copied().find(|at| Some(*at) != across && !names_something(&held.columns[*at]));
+        let values =
+            numeric.iter().copied().find(|at| Some(*at) != across && !names_something(&held.columns[*at]));
         let aggregate = if values.is_some() { Aggregate::Sum } else { Aggregate::Count };
         let shape = PivotShape { rows, across, values, aggregate };
         // Do not open the setup if no statement can be derived.
@@ -65,7 +66,8 @@ impl PivotChoice {
             Action::Left => self.turn(false),
             Action::Right => self.turn(true),
             Action::Open => {
-                return pivot(&self.sql, &self.held, self.shape, &self.meant).map_or(PivotStep::Left, PivotStep::Run);
+                return pivot(&self.sql, &self.held, self.shape, &self.meant)
+                    .map_or(PivotStep::Left, PivotStep::Run);
             }
             Action::Close => return PivotStep::Left,
             _ => {}
@@ -148,7 +150,10 @@ impl PivotChoice {
         }
         let key = |action| look.keys.label(action).unwrap_or_default();
         let [open, left, right] = [Action::Open, Action::Left, Action::Right].map(key);
-        canvas.pane_keys(own, &format!("{open} run · {left} {right} change · {}", look.hints(&[Action::Close])));
+        canvas.pane_keys(
+            own,
+            &format!("{open} run · {left} {right} change · {}", look.hints(&[Action::Close])),
+        );
     }
 }
 
@@ -186,7 +191,9 @@ mod tests {
         let mut choice = PivotChoice::of("SELECT * FROM t", held(), 0, RowsMeant::All).expect("a choice");
         let shape = PivotShape { rows: 0, across: Some(1), values: Some(3), aggregate: Aggregate::Sum };
         assert_eq!(choice.shape, shape, "days and decimals are not used as columns, and days are not summed");
-        assert!(matches!(choice.act(Action::Open), PivotStep::Run(sql) if sql.contains("sum(amount) FILTER")));
+        assert!(
+            matches!(choice.act(Action::Open), PivotStep::Run(sql) if sql.contains("sum(amount) FILTER"))
+        );
         assert_eq!(choice.act(Action::Close), PivotStep::Left);
         assert!(PivotChoice::of("EXPLAIN QUERY PLAN SELECT 1", held(), 0, RowsMeant::All).is_none());
     }

@@ -5,8 +5,8 @@ use ratatui::layout::Rect;
 use super::values::{decimals_shown, is_numeric};
 use crate::screens::panes::Seat;
 use novamind_base::notation::{compact, grouped};
-use novamind_record::folder::library::{ChartKind, ChartLine};
 use novamind_database::{Cell, Rows};
+use novamind_record::folder::library::{ChartKind, ChartLine};
 use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
 use novamind_tui::text::{arrow, number};
 use novamind_tui::theme::Role;
@@ -43,7 +43,9 @@ impl PlottedColumns {
     /// Returns the chart that a statement specifies, otherwise a default. Returns `None` without a numeric
     /// column.
     pub fn of(rows: &Rows, proposed: Option<&ChartLine>) -> Option<PlottedColumns> {
-        proposed.and_then(|line| PlottedColumns::proposed(rows, line)).or_else(|| PlottedColumns::likeliest(rows))
+        proposed
+            .and_then(|line| PlottedColumns::proposed(rows, line))
+            .or_else(|| PlottedColumns::likeliest(rows))
     }
 
     fn proposed(rows: &Rows, line: &ChartLine) -> Option<PlottedColumns> {
@@ -235,11 +237,7 @@ impl PlottedColumns {
         };
         let lines: Vec<Line> = self.ys.iter().enumerate().map(line).collect();
         if lines.iter().map(|line| line.points.len()).sum::<usize>() < 2 {
-            canvas.text(
-                area,
-                "A line needs at least two points. Use bars (b).",
-                Role::Dim,
-            );
+            canvas.text(area, "A line needs at least two points. Use bars (b).", Role::Dim);
             return;
         }
         let name = |place: f64| {

@@ -2,10 +2,10 @@
 
 use ratatui::layout::Rect;
 
-use crate::effect::Effect;
-use crate::context::Look;
 use crate::action::Action;
-use novamind_record::folder::library::{Library, Head, file_name};
+use crate::context::Look;
+use crate::effect::Effect;
+use novamind_record::folder::library::{Head, Library, file_name};
 use novamind_tui::canvas::{Canvas, centered};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
@@ -68,15 +68,21 @@ impl Saving {
             NameTaken::Wrong => {
                 ("Use letters, digits, spaces, - and _ (at most 60 characters).".to_owned(), Role::Warning)
             }
-            NameTaken::Free(name) => (format!("Saved as queries/{name}.sql in your configuration."), Role::Dim),
+            NameTaken::Free(name) => {
+                (format!("Saved as queries/{name}.sql in your configuration."), Role::Dim)
+            }
             NameTaken::Own(name) if again(&name) => {
                 (format!("! {name} already exists. Press enter again to replace it."), Role::Warning)
             }
-            NameTaken::Own(name) => (format!("{name} already exists. Enter asks for confirmation."), Role::Warning),
+            NameTaken::Own(name) => {
+                (format!("{name} already exists. Enter asks for confirmation."), Role::Warning)
+            }
             NameTaken::Shipped(name) if again(&name) => {
                 (format!("! {name} is a built-in query. Press enter again to override it."), Role::Warning)
             }
-            NameTaken::Shipped(name) => (format!("{name} is a built-in query. Enter asks for confirmation."), Role::Warning),
+            NameTaken::Shipped(name) => {
+                (format!("{name} is a built-in query. Enter asks for confirmation."), Role::Warning)
+            }
         }
     }
 

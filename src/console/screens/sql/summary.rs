@@ -5,15 +5,16 @@
 use super::meant::RowsMeant;
 use super::picker::in_a_line;
 use super::values::whole;
-use novamind_record::folder::library::body;
 use novamind_database::{Cell, Rows};
+use novamind_record::folder::library::body;
 use novamind_tui::sql::{KEYWORDS, tokens};
 
 /// Maximum number of value columns of a pivot; the other values share one column.
 pub const MOST_ACROSS: usize = 12;
 
 /// Error for statements that cannot be derived from.
-pub const NOT_A_TABLE: &str = "A query plan cannot be counted or pivoted. Run the statement without EXPLAIN first.";
+pub const NOT_A_TABLE: &str =
+    "A query plan cannot be counted or pivoted. Run the statement without EXPLAIN first.";
 
 /// Aggregation of the rows in a cell of a pivot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -157,7 +158,8 @@ pub fn pivot(sql: &str, held: &Rows, shape: PivotShape, meant: &RowsMeant) -> Op
         }
         cells.push(format!("{aggregated} AS \"all\""));
     } else {
-        let alias = values.map_or("count".to_owned(), |at| format!("{}_{}", aggregate.word(), held.columns[at]));
+        let alias =
+            values.map_or("count".to_owned(), |at| format!("{}_{}", aggregate.word(), held.columns[at]));
         cells.push(format!("{aggregated} AS {}", identifier(&alias)));
     }
     Some(format!(
@@ -251,7 +253,8 @@ mod tests {
     fn values_are_counted_with_their_shares() {
         let mut session = session();
         let rows = asked(&mut session, SQL);
-        let counted = asked(&mut session, &count(SQL, &rows.columns, 0, &RowsMeant::All).expect("a statement"));
+        let counted =
+            asked(&mut session, &count(SQL, &rows.columns, 0, &RowsMeant::All).expect("a statement"));
         assert_eq!(counted.columns, ["group by", "count", "percent"]);
         let text = |text: &str| Cell::Text(text.to_owned());
         let row = |cell, count, percent| vec![cell, Cell::Integer(count), Cell::Real(percent)];
@@ -259,7 +262,8 @@ mod tests {
             counted.rows,
             [row(text("it's"), 2, 50.0), row(Cell::Null, 1, 25.0), row(text("b"), 1, 25.0)]
         );
-        let second = asked(&mut session, &count(SQL, &rows.columns, 2, &RowsMeant::All).expect("a statement"));
+        let second =
+            asked(&mut session, &count(SQL, &rows.columns, 2, &RowsMeant::All).expect("a statement"));
         assert_eq!(second.rows.len(), 4, "the second column of the same name is counted: {second:?}");
     }
 
@@ -269,7 +273,8 @@ mod tests {
         let sql = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < 9000) SELECT x % 2 AS odd FROM n;";
         let held = asked(&mut session, sql);
         assert!(held.truncated);
-        let counted = asked(&mut session, &count(sql, &held.columns, 0, &RowsMeant::All).expect("a statement"));
+        let counted =
+            asked(&mut session, &count(sql, &held.columns, 0, &RowsMeant::All).expect("a statement"));
         assert_eq!(counted.rows[0][1], Cell::Integer(4500));
         let shape = PivotShape { rows: 0, across: Some(0), values: None, aggregate: Aggregate::Count };
         let pivoted = asked(&mut session, &pivot(sql, &held, shape, &RowsMeant::All).expect("a statement"));
@@ -288,7 +293,10 @@ mod tests {
         assert_eq!(rows.rows[0], [Cell::Integer(1), real(1.5), real(2.5), real(4.0), real(8.0)]);
         assert_eq!(rows.rows[1], [Cell::Integer(2), Cell::Null, Cell::Null, Cell::Null, Cell::Null]);
         for (aggregate, all) in [(Aggregate::Mean, 8.0 / 3.0), (Aggregate::Min, 1.5), (Aggregate::Max, 4.0)] {
-            let rows = asked(&mut session, &pivot(SQL, &held, PivotShape { aggregate, ..shape }, &RowsMeant::All).expect("one"));
+            let rows = asked(
+                &mut session,
+                &pivot(SQL, &held, PivotShape { aggregate, ..shape }, &RowsMeant::All).expect("one"),
+            );
             assert_eq!(rows.rows[0][4], real(all), "{aggregate:?}");
         }
         let flat = PivotShape { across: None, values: None, aggregate: Aggregate::Count, ..shape };

@@ -6,13 +6,13 @@ use unicode_width::UnicodeWidthStr;
 
 use super::picker::in_a_line;
 use super::results::Results;
-use std::time::Duration;
-use novamind_database::{table, Rows};
+use novamind_database::{Rows, table};
 use novamind_record::folder::library::{Head, body};
 use novamind_tools::Refusal;
 use novamind_tui::canvas::{Canvas, Click};
 use novamind_tui::sql::tokens;
 use novamind_tui::theme::Role;
+use std::time::Duration;
 
 const MOST: usize = 9;
 /// Maximum number of pinned tabs; one is left for the next statement.
@@ -120,7 +120,8 @@ impl Tabs {
     /// The reason why it cannot be pinned.
     pub fn pin(&mut self) -> Result<bool, String> {
         let pinned = self.tabs.iter().filter(|tab| tab.pinned);
-        let (count, bytes) = pinned.fold((0, 0), |(count, bytes), tab| (count + 1, bytes + tab.results.bytes()));
+        let (count, bytes) =
+            pinned.fold((0, 0), |(count, bytes), tab| (count + 1, bytes + tab.results.bytes()));
         let Some(tab) = self.tabs.get_mut(self.at).filter(|tab| !tab.results.is_refused()) else {
             return Err("No result to pin. Run a statement first.".to_owned());
         };
@@ -216,7 +217,11 @@ mod tests {
         assert_eq!(titles(&tabs)[..2], ["SELECT 1", "SELECT 5"]);
         assert_eq!((tabs.tabs.len(), tabs.number().as_str()), (9, " 9/9"));
         take(&mut tabs, 6);
-        assert_eq!((tabs.tabs.len(), tabs.statement()), (9, Some("SELECT 6")), "running it again updates its tab");
+        assert_eq!(
+            (tabs.tabs.len(), tabs.statement()),
+            (9, Some("SELECT 6")),
+            "running it again updates its tab"
+        );
         take(&mut tabs, 1);
         assert_eq!((titles(&tabs)[0], tabs.at), ("SELECT 1", 8), "a pinned tab does not change");
         assert_eq!(tabs.tabs.iter().filter(|tab| tab.sql == "SELECT 1").count(), 2);
@@ -240,7 +245,11 @@ mod tests {
         tabs.take("SELECT x", Err(Refusal::new("sql_error", "no")), Duration::ZERO);
         assert_eq!(tabs.tabs.len(), 2);
         take(&mut tabs, 1);
-        assert_eq!((tabs.tabs.len(), tabs.at), (1, 0), "the tab is updated and the failed statement is dropped");
+        assert_eq!(
+            (tabs.tabs.len(), tabs.at),
+            (1, 0),
+            "the tab is updated and the failed statement is dropped"
+        );
     }
 
     #[test]
@@ -262,7 +271,8 @@ mod tests {
         let mut tabs = Tabs::default();
         let text = Cell::Text("x".repeat(MOST_BYTES / 4));
         for number in 0..4 {
-            let large = Rows { columns: vec!["n".to_owned()], rows: vec![vec![text.clone()]], ..Rows::default() };
+            let large =
+                Rows { columns: vec!["n".to_owned()], rows: vec![vec![text.clone()]], ..Rows::default() };
             tabs.take(&format!("SELECT {number}"), Ok(large), Duration::ZERO);
         }
         assert!(tabs.bytes() <= MOST_BYTES && tabs.tabs.len() == 3, "{}", tabs.tabs.len());

@@ -4,8 +4,8 @@ use ratatui::layout::Rect;
 
 use super::values;
 use crate::action::Action;
-use crate::effect::Effect;
 use crate::context::Look;
+use crate::effect::Effect;
 use novamind_base::notation::grouped;
 use novamind_database::Rows;
 use novamind_tui::canvas::{Canvas, Click, centered, rows_of};

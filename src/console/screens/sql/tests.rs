@@ -6,12 +6,12 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::*;
 use crate::action::Scope;
-use novamind_worker::company::Company;
 use crate::keys::Keys;
 use crate::screens::Screen;
 use crate::test_kit::{asked, company, picture, session, sweep};
 use novamind_database::{Cell, Rows};
 use novamind_tools::Refusal;
+use novamind_worker::company::Company;
 
 fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
     let keys = Keys::shipped();
@@ -382,13 +382,22 @@ fn a_column_is_counted_by_a_query_that_can_be_edited() {
     assert!(matches!(&act(&mut screen, &company, Action::Pivot)[..], [Effect::Complain(_)]), "one at a time");
     hear(&mut screen, &company, Ok(three_rows()));
     let lines = picture(&screen, &company, 120, 37);
-    assert!(holds(&lines, "Result 2/2 · 3 rows") && holds(&lines, " 1 ad_channel_leads ") && holds(&lines, " 2 subs counted "));
+    assert!(
+        holds(&lines, "Result 2/2 · 3 rows")
+            && holds(&lines, " 1 ad_channel_leads ")
+            && holds(&lines, " 2 subs counted ")
+    );
     act(&mut screen, &company, Action::PreviousResult);
     act(&mut screen, &company, Action::RecallQuery);
-    assert_eq!((screen.editor.text().as_str(), screen.focus), ("SELECT * FROM ad_channel_leads", SqlPane::Editor));
+    assert_eq!(
+        (screen.editor.text().as_str(), screen.focus),
+        ("SELECT * FROM ad_channel_leads", SqlPane::Editor)
+    );
     let mut empty = Sql::default();
     empty.focus_on(SqlPane::Results);
-    for action in [Action::CountColumn, Action::Pivot, Action::RecallQuery, Action::CloseResult, Action::PinResult] {
+    for action in
+        [Action::CountColumn, Action::Pivot, Action::RecallQuery, Action::CloseResult, Action::PinResult]
+    {
         assert!(matches!(&act(&mut empty, &company, action)[..], [Effect::Complain(_)]), "{action:?}");
     }
     for action in [Action::CountColumn, Action::Pivot] {
@@ -433,7 +442,10 @@ fn a_count_and_a_pivot_are_made_of_the_rows_that_the_filter_shows() {
     let asked = act(&mut screen, &company, Action::CountColumn);
     let Some(Effect::Say(words)) = asked.last() else { panic!("{asked:?}") };
     let sql = sql(&asked);
-    assert!(sql.contains("counted, all rows") && !sql.contains("WHERE") && words.contains("without the filter"), "{asked:?}");
+    assert!(
+        sql.contains("counted, all rows") && !sql.contains("WHERE") && words.contains("without the filter"),
+        "{asked:?}"
+    );
 }
 
 #[test]

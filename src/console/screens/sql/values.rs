@@ -2,11 +2,11 @@
 
 use serde_json::Value;
 
-use novamind_tui::theme::Role;
-use novamind_tui::widgets::{Cell as Shown, Column};
 use novamind_base::notation::{csv_cell, grouped, printable};
 use novamind_database::{Cell, Rows};
 use novamind_session::rows_as_json;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{Cell as Shown, Column};
 
 /// Maximum column width on the screen; longer values can be opened.
 const WIDEST: u16 = 48;
@@ -141,7 +141,9 @@ pub fn all_tabbed(rows: &Rows) -> String {
 
 /// Returns a result as a Markdown table; numbers are right-aligned.
 pub fn markdown(rows: &Rows) -> String {
-    let clean = |text: &str| printable(text).replace('\\', "\\\\").replace('|', "\\|").replace(['\n', '\r', '\t'], " ");
+    let clean = |text: &str| {
+        printable(text).replace('\\', "\\\\").replace('|', "\\|").replace(['\n', '\r', '\t'], " ")
+    };
     let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
     let mut text = line(rows.columns.iter().map(|name| clean(name)).collect());
     let side = |at: usize| if is_numeric(rows, at) { "---:" } else { "---" }.to_owned();

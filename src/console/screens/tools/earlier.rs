@@ -2,11 +2,11 @@
 
 use serde_json::Value;
 
-use novamind_worker::company::Company;
 use crate::screens::journal::entries::in_words;
 use novamind_report::deals::deals_in_words;
 use novamind_session::JournalEntry;
 use novamind_tools::ToolId;
+use novamind_worker::company::Company;
 
 pub const MOST: usize = 10;
 
@@ -41,7 +41,9 @@ mod tests {
         let mut session = played(1);
         for price in [14, 14] {
             let arguments = serde_json::json!({ "A": price });
-            session.call("set_prices", &arguments, novamind_record::trajectory::record::Via::Form).expect("a price");
+            session
+                .call("set_prices", &arguments, novamind_record::trajectory::record::Via::Form)
+                .expect("a price");
         }
         let company = Company::of(&session);
         assert_eq!(

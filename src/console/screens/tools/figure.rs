@@ -2,8 +2,8 @@
 
 use std::sync::LazyLock;
 
-use crate::context::Figure;
 use super::form::Form;
+use crate::context::Figure;
 use novamind_tools::{ArgumentKind, CATALOGUE, Key, Spec, ToolId};
 
 /// Names of all arguments with their tools: `set_prices.A`.
@@ -31,7 +31,9 @@ pub(super) fn of_cell(form: &Form) -> Option<Figure> {
     Some(Figure {
         title: format!("{tool} {}", block.path(form.at.row, form.at.column).replace('.', " ")),
         term: term_of(tool, block.argument.name)?,
-        sql: history(form), why: None })
+        sql: history(form),
+        why: None,
+    })
 }
 
 /// Returns the query for the value over time, or for its effect.

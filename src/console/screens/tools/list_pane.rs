@@ -5,9 +5,9 @@ use ratatui::layout::Rect;
 
 use super::{Tools, ToolsPane, figure};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_tools::{Module, Spec};
 use novamind_tui::canvas::{Align, Canvas, Click, fit, rows_of};
 use novamind_tui::theme::Role;

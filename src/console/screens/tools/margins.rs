@@ -1,10 +1,10 @@
 //! Margins that a draft of prices, model tiers or quotas would result in.
 
 use super::form::Form;
-use novamind_worker::company::Company;
 use novamind_report::plan_margins::{Lever, PlanTerms, Sales, margin_lines, margin_summary};
-use novamind_tools::ToolId;
 use novamind_session::identifiers::ByPlan;
+use novamind_tools::ToolId;
+use novamind_worker::company::Company;
 
 /// Returns the margin lines for a form, heading first: for every model tier, or in brief for the set tier
 /// only. Empty for other tools.

@@ -19,18 +19,17 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use serde_json::Value;
 use strum::VariantArray;
 
-use super::panes::{Pane, Paned, draw_pane};
-use crate::context::{Look, ScreenId};
 use super::ScreenState;
+use super::panes::{Pane, Paned, draw_pane};
 use crate::action::Action;
+use crate::context::{Look, ScreenId};
 use crate::effect::Effect;
 use form::{Form, spaced};
-use outcome::Leads;
 use novamind_base::notation::plain_numbers;
+use novamind_database::Rows;
 use novamind_report::insights::{insights_as_ranges, overview_with_ages};
 use novamind_report::plan_margins::Sales;
 use novamind_report::research::projects_with_means;
-use novamind_database::Rows;
 use novamind_session::JournalEntry;
 use novamind_tools::{Answer, CATALOGUE, Spec, ToolId};
 use novamind_tui::canvas::Canvas;
@@ -38,6 +37,7 @@ use novamind_tui::widgets::Field;
 use novamind_worker::company::Company;
 use novamind_worker::message::News;
 use novamind_worker::readings::Reading;
+use outcome::Leads;
 
 /// Panes of the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

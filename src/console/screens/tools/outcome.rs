@@ -11,10 +11,10 @@ use super::sheet::Block;
 use crate::action::Action;
 use crate::context::Look;
 use novamind_base::notation::{dollars, grouped};
+use novamind_database::{Rows, number_at, text_at};
 use novamind_report::plan_margins::Sales;
 use novamind_report::research::outlook_lines;
 use novamind_report::review::terms_line;
-use novamind_database::{Rows, number_at, text_at};
 use novamind_tools::{ArgumentKind, Key};
 use novamind_tui::text::{count, number, wrapped};
 use novamind_tui::theme::Role;
@@ -133,9 +133,11 @@ pub(super) fn outcome_lines(
     if let Some(answer) = answer {
         answer_lines(answer, &mut paragraph);
     }
-    let spread = form.preview.as_ref().is_some_and(|preview| preview.as_ref().is_ok_and(|own| own.research.is_some()));
+    let spread =
+        form.preview.as_ref().is_some_and(|preview| preview.as_ref().is_ok_and(|own| own.research.is_some()));
     let mut needed = if spread { lines.len() } else { 0 };
-    let tables = [margins(form, sales, look.company, detail == Detail::Brief), reference(form.spec.id, look.company)];
+    let tables =
+        [margins(form, sales, look.company, detail == Detail::Brief), reference(form.spec.id, look.company)];
     for (number, table) in tables.iter().enumerate().filter(|(_, table)| !table.is_empty()) {
         if !dense {
             lines.push((" ".to_owned(), Role::Text));

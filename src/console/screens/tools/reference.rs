@@ -3,12 +3,12 @@
 use indexmap::IndexMap;
 use unicode_width::UnicodeWidthStr;
 
-use novamind_worker::company::Company;
 use novamind_base::notation::{cents, dollars, grouped};
 use novamind_report::research::{mean_days, mean_gain};
 use novamind_session::ResearchMeans;
 use novamind_tools::{ResearchTierFacts, ToolId};
 use novamind_tui::text::number;
+use novamind_worker::company::Company;
 
 /// Returns the lines next to a form, heading first; empty for tools without reference figures.
 pub fn reference(tool: ToolId, company: &Company) -> Vec<String> {
@@ -86,7 +86,8 @@ fn threads(company: &Company) -> Vec<String> {
     if company.seen.waiting.is_empty() {
         return Vec::new();
     }
-    let mut lines = vec!["customer  group   seats  thread            asks         days left  enterprise".to_owned()];
+    let mut lines =
+        vec!["customer  group   seats  thread            asks         days left  enterprise".to_owned()];
     lines.extend(company.seen.waiting.iter().map(|thread| {
         let asks = thread.asked.map_or("–".to_owned(), cents);
         format!(

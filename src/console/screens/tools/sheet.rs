@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value};
 
-use novamind_worker::company::Company;
 use novamind_base::notation::{json_number, parse_number};
 use novamind_session::identifiers::{Channel, Plan};
 use novamind_tools::{Argument, ArgumentKind, Key, Kind, Range, Spec, ToolId};
 use novamind_tui::text::number;
 use novamind_tui::widgets::Field;
+use novamind_worker::company::Company;
 
 const CODE: &str = "code";
 
@@ -183,11 +183,7 @@ impl Block {
 
     /// Returns the error text for invalid input.
     pub fn expected(&self) -> &'static str {
-        if self.is_text() {
-            "enter a list or object as JSON"
-        } else {
-            "enter a number"
-        }
+        if self.is_text() { "enter a list or object as JSON" } else { "enter a number" }
     }
 
     /// Returns the value to send.
@@ -354,8 +350,9 @@ impl Sheet {
 
     pub fn places(&self) -> impl Iterator<Item = CellPlace> + '_ {
         self.blocks.iter().enumerate().flat_map(|(block, own)| {
-            (0..own.rows.len())
-                .flat_map(move |row| (0..own.columns.len()).map(move |column| CellPlace { block, row, column }))
+            (0..own.rows.len()).flat_map(move |row| {
+                (0..own.columns.len()).map(move |column| CellPlace { block, row, column })
+            })
         })
     }
 
@@ -445,7 +442,7 @@ mod tests {
         fill(&mut deals, "deals", "[[7, ");
         assert_eq!(deals.arguments(), Err(CellPlace::default()));
         assert!(deals.blocks[0].expected().contains("JSON"));
- // Tools with a separate screen have no cells.
+        // Tools with a separate screen have no cells.
         assert!(sheet("query").blocks.is_empty() && sheet("next_week").blocks.is_empty());
     }
 

@@ -5,8 +5,8 @@ use crate::action::Scope;
 use crate::keys::Keys;
 use crate::screens::Screen;
 use crate::test_kit::{act, company, drawn, on_screen, played, shown, sweep};
-use novamind_session::identifiers::Plan;
 use novamind_record::trajectory::record::Via;
+use novamind_session::identifiers::Plan;
 use novamind_tools::{Refusal, ToolId};
 use novamind_tui::chord::Chord;
 use novamind_worker::request::Request;
@@ -36,13 +36,16 @@ fn typed(tool: ToolId, keys: &[&str]) -> (Tools, Vec<Effect>) {
 fn enter_edits_a_cell_and_arrows_go_on_in_the_next() {
     let (_, effects) =
         typed(ToolId::SetPrices, &["enter", "1", "2", "down", "2", "5", "down", "5", "5", "ctrl-s"]);
-    let Some(Effect::Request(Request::Call { tool, arguments })) = effects.first() else { panic!("{effects:?}") };
+    let Some(Effect::Request(Request::Call { tool, arguments })) = effects.first() else {
+        panic!("{effects:?}")
+    };
     assert_eq!((*tool, arguments), (ToolId::SetPrices, &json!({"A": 12, "B": 25, "C": 55})));
 }
 
 #[test]
 fn down_in_the_last_row_goes_on_typing_there() {
-    let (tools, _) = typed(ToolId::SetPrices, &["enter", "1", "2", "down", "2", "5", "down", "5", "down", "5"]);
+    let (tools, _) =
+        typed(ToolId::SetPrices, &["enter", "1", "2", "down", "2", "5", "down", "5", "down", "5"]);
     let form = tools.seen_form().expect("a form");
     assert!(form.is_typing());
     assert_eq!(form.sheet.arguments(), Ok(json!({"A": 12, "B": 25, "C": 55})));
@@ -162,7 +165,10 @@ fn deals_are_typed_as_json_and_asked_about_before_they_go_out() {
         "{effects:?}"
     );
     let (_, effects) = typed(ToolId::RejectEnterpriseDeal, &["ctrl-s"]);
-    assert!(matches!(&effects[..], [Effect::Request(Request::Call { .. })]), "the tool names the missing argument: {effects:?}");
+    assert!(
+        matches!(&effects[..], [Effect::Request(Request::Call { .. })]),
+        "the tool names the missing argument: {effects:?}"
+    );
 }
 
 #[test]
@@ -173,7 +179,7 @@ fn escape_brings_back_what_was_there() {
 
 #[test]
 fn the_same_value_goes_down_a_column() {
- // The value of the focused cell, or of the cell that enter has just left.
+    // The value of the focused cell, or of the cell that enter has just left.
     for keys in [&["right", "enter", "4", "0", "enter", "up", "="][..], &["right", "4", "0", "enter", "="]] {
         let (tools, _) = typed(ToolId::SetTargetedAdSpend, keys);
         let arguments = tools.seen_form().expect("a form").sheet.arguments().expect("numbers");
@@ -376,8 +382,11 @@ fn columns_of_projects_stand_apart() {
 #[test]
 fn a_small_window_shows_every_value_and_the_margin_of_every_plan() {
     let (_, company, mut screen) = on_screen::<Tools>(6);
-    let sold: Vec<&str> =
-        Plan::ALL.into_iter().filter(|plan| screen.sales.of_plan(*plan).usage().is_some()).map(Plan::id).collect();
+    let sold: Vec<&str> = Plan::ALL
+        .into_iter()
+        .filter(|plan| screen.sales.of_plan(*plan).usage().is_some())
+        .map(Plan::id)
+        .collect();
     assert!(sold.len() >= 2, "{sold:?}");
     for tool in [ToolId::SetPrices, ToolId::SetModelTiers, ToolId::SetUsageQuotas] {
         for draft in [json!({}), json!({"A": 4, "B": 3, "C": 5})] {
@@ -385,7 +394,8 @@ fn a_small_window_shows_every_value_and_the_margin_of_every_plan() {
             screen.focus_on(ToolsPane::Form);
             for (width, height) in [(60, 13), (80, 21), (120, 37), (200, 57)] {
                 let text = drawn(&screen, &company, width, height);
-                let holds = |words: &[&str]| text.lines().any(|line| words.iter().all(|word| line.contains(word)));
+                let holds =
+                    |words: &[&str]| text.lines().any(|line| words.iter().all(|word| line.contains(word)));
                 let at = format!("{tool} {draft} at {width}x{height} in\n{text}");
                 for plan in ["A", "B", "C"] {
                     let now = novamind_tui::text::number(company.setting(tool, plan));
@@ -409,13 +419,13 @@ fn code_is_written_in_lines_and_pasted_as_it_is() {
     let (_, effects) = typed(ToolId::PythonExec, &[&keys[..], &["ctrl-s"]].concat());
     let [Effect::Request(Request::Call { arguments, .. })] = &effects[..] else { panic!("{effects:?}") };
     assert_eq!(arguments["code"], "# p\nx");
- // Reopened, the form has the code and shows its number of lines.
+    // Reopened, the form has the code and shows its number of lines.
     let (mut tools, _) = typed(ToolId::PythonExec, &[&keys[..], &["esc"]].concat());
     let (company, bindings) = (company(), Keys::shipped());
     let text = drawn(&tools, &company, 80, 21);
     assert!(text.contains("# p … 2 lines"), "{text}");
     let look = Look { company: &company, keys: &bindings, page: 10 };
- // The output is shown below the code until the code changes.
+    // The output is shown below the code until the code changes.
     let said = json!({"returncode": 0, "stdout": "first\nsecond\n", "stderr": ""});
     tools.forms.get_mut(&ToolId::PythonExec).expect("a form").answer = Some(Ok(said));
     let text = drawn(&tools, &company, 80, 21);

@@ -2,8 +2,8 @@
 
 use super::{Seen, Xray};
 use crate::effect::Effect;
-use novamind_worker::look_inside::{BreakpointWork, LookFound, LookQuestion};
 use novamind_tools::Refusal;
+use novamind_worker::look_inside::{BreakpointWork, LookFound, LookQuestion};
 
 impl Xray {
     pub(super) fn send(&mut self, question: LookQuestion) -> Vec<Effect> {

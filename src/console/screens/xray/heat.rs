@@ -44,7 +44,8 @@ pub fn rows(map: &SpillMap, width: usize) -> Vec<Row> {
 }
 
 const OWN: &str = "own change";
-const LEGEND: &str = "░ ▒ ▓ █ share of the largest spillover · + raises, - lowers · x dropped · dot: no weight";
+const LEGEND: &str =
+    "░ ▒ ▓ █ share of the largest spillover · + raises, - lowers · x dropped · dot: no weight";
 
 fn row_of(row: &SpillRow, block: Range<usize>, own: usize, is_wide: bool) -> Row {
     let mut pieces =
@@ -97,15 +98,22 @@ mod tests {
             own: "+0.001000 dropped".to_owned(),
             cells: (0..targets).map(cell).collect(),
         };
-        SpillMap { heading: "changes".to_owned(), targets: groups, rows: vec![row], notes: vec!["note".to_owned()] }
+        SpillMap {
+            heading: "changes".to_owned(),
+            targets: groups,
+            rows: vec![row],
+            notes: vec!["note".to_owned()],
+        }
     }
 
     #[test]
     fn every_spill_stands_in_a_map_of_any_width_as_a_mark_and_a_number() {
         for (targets, width) in [(4, 120), (4, 40), (12, 120), (12, 60), (26, 30), (1, 1)] {
             let map = map(targets);
-            let rows: Vec<String> =
-                rows(&map, width).iter().map(|row| row.iter().map(|(text, _)| text.as_str()).collect()).collect();
+            let rows: Vec<String> = rows(&map, width)
+                .iter()
+                .map(|row| row.iter().map(|(text, _)| text.as_str()).collect())
+                .collect();
             let text = rows.join("\n");
             let heard = map.rows[0].cells.iter().filter(|cell| matches!(cell, SpillCell::Heard(..))).count();
             let words: String = text.split_whitespace().collect();

@@ -7,16 +7,16 @@ use super::{Xray, heat};
 use crate::action::Action;
 use crate::context::Look;
 use crate::screens::panes::Seat;
-use ratatui::layout::Rect;
 use novamind_base::notation::capital;
+use novamind_insight::LeadFactor;
 use novamind_report::xray::line_of_factor;
 use novamind_session::REFUSED_LOOK;
-use novamind_insight::LeadFactor;
 use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::spark;
 use novamind_worker::look_inside::{LookCurve, LookFound};
+use ratatui::layout::Rect;
 
 pub type Row = Vec<(String, Role)>;
 
@@ -26,7 +26,9 @@ const DAYS: usize = 28;
 pub fn draw(xray: &Xray, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
     let width = usize::from(seat.area.width);
     let rows = match shown(xray, look) {
-        Content::Sentence(text, role) => wrapped(&text, width).into_iter().map(|part| vec![(part, role)]).collect(),
+        Content::Sentence(text, role) => {
+            wrapped(&text, width).into_iter().map(|part| vec![(part, role)]).collect()
+        }
         Content::Found(LookFound { map: Some(map), .. }) => heat::rows(map, width),
         Content::Found(found) => {
             let marked = (xray.view() == View::Leads && !found.curves.is_empty())

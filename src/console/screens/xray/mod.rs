@@ -19,14 +19,14 @@ use strum::VariantArray;
 
 use self::typing::{Expected, Typed, TypedLine};
 use self::view::{Choices, View};
-use super::panes::{Pane, Paned, draw_pane};
-use crate::context::Look;
 use super::ScreenState;
+use super::panes::{Pane, Paned, draw_pane};
 use crate::action::Action;
+use crate::context::Look;
 use crate::effect::Effect;
+use novamind_insight::{Breakpoint, DrawnPart, LeadFactor};
 use novamind_report::xray::AskedWords;
 use novamind_session::identifiers::Group;
-use novamind_insight::{Breakpoint, DrawnPart, LeadFactor};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::scroll::Scroll;

@@ -6,8 +6,8 @@ use crate::test_kit::{act, asked, company, drawn, on_screen, played, settings, s
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
-use novamind_tools::Refusal;
 use novamind_session::{NewRun, Session, Storage};
+use novamind_tools::Refusal;
 use novamind_worker::queries::{QueriedTables, Query};
 
 fn open(company: Company) -> Company {

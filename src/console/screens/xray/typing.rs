@@ -3,9 +3,9 @@
 
 use super::view::{Choices, View};
 use novamind_base::nearest;
+use novamind_insight::{Condition, ConditionProblem, DrawnPart, LeadFactor};
 use novamind_report::xray::AskedWords;
 use novamind_session::identifiers::Group;
-use novamind_insight::{Condition, ConditionProblem, DrawnPart, LeadFactor};
 use novamind_tui::widgets::Field;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,8 +51,14 @@ pub struct TypedLine {
 }
 
 /// Prompts for the value of a factor, in the order of the equation.
-const HELD: [&str; LeadFactor::ALL.len()] =
-    ["R fixed at (1)", "D fixed at (1)", "C fixed at (1)", "M fixed at (1)", "A fixed at (1)", "Z fixed at (1)"];
+const HELD: [&str; LeadFactor::ALL.len()] = [
+    "R fixed at (1)",
+    "D fixed at (1)",
+    "C fixed at (1)",
+    "M fixed at (1)",
+    "A fixed at (1)",
+    "Z fixed at (1)",
+];
 
 impl Expected {
     /// Returns the kind of input of a view; `None` if it has nothing to choose.

@@ -132,7 +132,9 @@ impl ClassPage {
                 let line = |role| Line::through(own.points.clone(), role);
                 match own.label {
                     None => (1, line(Role::Series(1)).named("reference")),
-                    label if label == self.shown.lit.as_deref() => (2, line(Role::Series(0)).named("selected")),
+                    label if label == self.shown.lit.as_deref() => {
+                        (2, line(Role::Series(0)).named("selected"))
+                    }
                     Some(_) => (0, line(Role::Dim)),
                 }
             })

@@ -113,10 +113,7 @@ fn keys_choose_decision_and_figure_among_those_that_differ() {
     assert!(shown(&page, 120, 39).contains("subscribers by price B"));
     page.act(Action::ClassDecision);
     page.act(Action::ClassFigure);
-    assert!(
-        shown(&page, 120, 39).contains("cash by price A"),
-        "price C and R&D are equal for all students"
-    );
+    assert!(shown(&page, 120, 39).contains("cash by price A"), "price C and R&D are equal for all students");
 }
 
 #[test]

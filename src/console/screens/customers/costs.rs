@@ -70,12 +70,14 @@ fn selected<'a>(customers: &Customers, company: &'a Company) -> Option<&'a PairC
     company.lead_costs.get(customers.costs.selected()?)
 }
 
+/// Returns the columns of the table.
 pub fn columns() -> Vec<Column> {
     let words = ["channel", "group"].map(Column::words);
     let numbers = ["leads", "spend", "$/lead", "was", "$/first bill", "was"].map(Column::numbers);
     words.into_iter().chain(numbers).collect()
 }
 
+/// Returns the row of a pair.
 pub fn row_of(pair: &PairCost) -> Vec<Cell> {
     let each = |value: Option<f64>| match value {
         Some(value) => Cell::number(value, cents(value)),

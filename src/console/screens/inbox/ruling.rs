@@ -122,6 +122,7 @@ impl Inbox {
         vec![Effect::ConfirmCalls { calls, text }]
     }
 
+    /// Returns whether rules have been sent in this session.
     pub fn has_sent_rules(&self) -> bool {
         self.last_rules.is_some()
     }

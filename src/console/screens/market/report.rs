@@ -170,6 +170,7 @@ fn study_words(company: &Company, group: Group, chosen: Option<u8>) -> String {
     format!("{what}: {}, {} days, then ±{}", dollars(terms.cost), terms.days, percent(terms.noise, 0))
 }
 
+/// The report of the selected group.
 pub struct ReportPane;
 
 impl Pane<Market> for ReportPane {

@@ -374,7 +374,7 @@ fn a_run_is_played_again_from_the_list_and_from_the_first_page() {
 fn a_run_that_does_not_open_is_offered_another_way_after_a_question() {
     let long = "trajectory.jsonl, line 8: the line does not follow from the one before. ".repeat(12);
     for (instead, words) in [
-        (Instead::Watch("aaaa0001".to_owned()), "Watch it from here"),
+        (Instead::Watch("aaaa0001".to_owned()), "Watch it here"),
         (Instead::Rescue("aaaa0001".to_owned()), "as a branch?"),
     ] {
         for page in [MenuPage::Home, MenuPage::Runs] {

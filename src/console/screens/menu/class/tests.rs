@@ -136,7 +136,7 @@ fn hidden_names_are_nowhere_on_the_screen() {
 #[test]
 fn a_small_window_shows_one_after_the_other_below_the_curves() {
     let mut page = page(12);
-    for part in ["price A across", "Guesses", "Pitfall met most", "price A across"] {
+    for part in ["cash by price A", "Guesses", "Most common pitfall", "cash by price A"] {
         let screen = shown(&page, 80, 23);
         assert!(screen.contains(part) && screen.contains("Cash by day"), "{part} is missing in\n{screen}");
         page.act(Action::ClassView);

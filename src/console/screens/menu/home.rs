@@ -62,9 +62,9 @@ impl Menu {
             choices.push(tour);
         }
         choices.push((HomeEntry::Lessons, "Lessons", "One idea each, 12 to 25 minutes".to_owned()));
-        choices.push((HomeEntry::Handout, "Handout", "The file you received, such as S07.nm".to_owned()));
+        choices.push((HomeEntry::Handout, "Handout", "Your file, such as S07.nm".to_owned()));
         choices.push((HomeEntry::Class, "Class", "Your students' results".to_owned()));
-        choices.push((HomeEntry::Quit, "Quit", "Everything you confirmed is saved".to_owned()));
+        choices.push((HomeEntry::Quit, "Quit", "Confirmed actions are saved".to_owned()));
         choices
     }
 

@@ -316,7 +316,7 @@ fn the_paper_table_shows_both_kinds_of_results() {
     menu.page = MenuPage::Paper;
     let screen = shown(&menu, 120, 39);
     for part in
-        ["Rule-based baseline", "$15,756,408", "You · bbbb0002", "sandbox · seed 42", "upper bound $2.20B"]
+        ["Rule-based baseline", "$15,756,408", "You · bbbb0002", "sandbox · seed 42", "upper bound: $2.20B"]
     {
         assert!(screen.contains(part), "{part} is missing in\n{screen}");
     }

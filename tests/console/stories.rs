@@ -237,7 +237,7 @@ fn a_group_is_studied_and_one_walks_between_its_report_and_its_customers() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
     console.press("7 down + r");
-    console.shows("A study of S2, to level 3.");
+    console.shows("A study of S2 to level 3.");
     console.press("n");
     console.shows("level 3: $175,000");
     console.press("r y");

@@ -142,7 +142,7 @@ fn a_debug_run_runs_to_a_breakpoint_that_is_set_on_the_screen() {
     drop(run(runs.path(), Mode::Debug, 2));
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
     console.press("; k");
-    console.shows("No breakpoint is set");
+    console.shows("no breakpoint is set");
     console.press("e 'leads(S1)>1' enter e 'nonsense' enter");
     console.shows("nonsense");
     console.press("esc e 'cash<0' enter");

@@ -106,7 +106,7 @@ fn lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine>
         )
     }));
     let smallest = if company { " (smallest)" } else { "" };
-    lines.push(line(format!("quota    usage {} units a day{smallest}", fit.usage.units()), Role::Header));
+    lines.push(line(format!("quota    typical use {} a day{smallest}", fit.usage.units()), Role::Header));
     let quotas = Plan::ALL.map(|plan| format!("{plan} {}", compact(fit.plans[plan].quota)));
     lines.push(line(format!(" {} a day", quotas.join(" · ")), worst(fit, Concern::Quota)));
     let mut told = |name: &str, text: &str, role: Role| {

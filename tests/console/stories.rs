@@ -304,5 +304,8 @@ fn the_keys_after_a_query_of_the_library_are_those_of_its_result() {
     console.press(".");
     let after = console.screen();
     assert_ne!(before, after);
-    assert!(after.contains("lines") || after.contains("bars") || after.contains("at least two points"), "{after}");
+    assert!(
+        after.contains("lines") || after.contains("bars") || after.contains("at least two points"),
+        "{after}"
+    );
 }

@@ -57,15 +57,15 @@ fn a_hand_out_is_opened_from_the_start_menu_and_gone_on_with() {
     let (folder, runs) = (place.path().join("class"), place.path().join("runs"));
     class(&folder, 2);
     let mut console = Console::start(&runs, SMALL);
-    choose(&mut console, "Hand-out");
-    console.shows("File of the hand-out");
+    choose(&mut console, "Handout");
+    console.shows("Handout file");
     console.press("enter");
-    console.shows("type a path");
+    console.shows("Type a path");
     enter(&mut console, "nothing.nm");
     console.shows("nothing.nm");
     assert!(console.app.run().is_none());
     console.press("esc");
-    choose(&mut console, "Hand-out");
+    choose(&mut console, "Handout");
     let path = folder.join("S01.nm").display().to_string();
     enter(&mut console, &path);
     console.shows("Three weeks");
@@ -75,12 +75,12 @@ fn a_hand_out_is_opened_from_the_start_menu_and_gone_on_with() {
     // The menu lists the student's runs, and the same file resumes.
     console.press("esc ; q");
     console.shows("1 on this machine");
-    choose(&mut console, "Hand-out");
+    choose(&mut console, "Handout");
     enter(&mut console, &path);
     assert_eq!(own(&console), first);
     // Another student uses the same computer.
     console.press("esc ; q");
-    choose(&mut console, "Hand-out");
+    choose(&mut console, "Handout");
     enter(&mut console, &folder.join("S02.nm").display().to_string());
     assert!(own(&console).starts_with(runs.join("participants/S02")));
     console.press("esc q");
@@ -94,7 +94,7 @@ fn the_hand_out_of_somebody_else_is_refused_where_the_runs_are_one_persons() {
     let (folder, runs) = (place.path().join("class"), place.path().join("runs/participants/S02"));
     class(&folder, 2);
     let mut console = Console::start(&runs, SMALL);
-    choose(&mut console, "Hand-out");
+    choose(&mut console, "Handout");
     enter(&mut console, &folder.join("S01.nm").display().to_string());
     console.shows("this is the handout of S01, but this folder has the runs of S02");
     assert!(console.app.run().is_none() && !runs.with_file_name("S01").exists());

@@ -95,7 +95,7 @@ const FIGURES: [Figure; 29] = [
          AND status = 'cancelled' AND end_day BETWEEN {from} AND {to}",
     ),
     Figure(
-        &["companies lost", "enterprise lost"],
+        &["companies lost", "enterprise lost", "enterprises lost"],
         "SELECT count(*) FROM subscriptions JOIN customers USING (customer_id) WHERE customer_type = 'large' \
          AND status = 'cancelled' AND end_day BETWEEN {from} AND {to}",
     ),

@@ -80,7 +80,7 @@ fn the_way_is_shown_and_esc_goes_back_along_it() {
     console.press("1 enter");
     console.shows("Overview › set_prices");
     console.press("enter '14' enter ctrl-s esc");
-    console.shows("Needs you");
+    console.shows("Action needed");
     // The source rows of a figure, and their query.
     console.week();
     console.press("esc 2 f");
@@ -90,7 +90,7 @@ fn the_way_is_shown_and_esc_goes_back_along_it() {
     console.press("esc");
     console.shows("Cash › Result");
     console.press("esc");
-    console.shows("Books of week 1");
+    console.shows("Ledger of week 1");
     // Choosing a screen by its key clears the breadcrumbs.
     console.press("3 enter enter 8");
     assert!(!console.screen().contains("Customers ›"));

@@ -27,7 +27,7 @@ fn the_tour_goes_on_by_doing_and_is_resumed_where_it_stopped() {
     console.press("q");
     drop(console);
     let mut console = Console::start(runs.path(), (80, 24));
-    console.shows("goes on in your practice run");
+    console.shows("Continues the practice run");
     console.press("down down down down enter");
     console.shows("Tour · 4 of 18 · A model");
     console.press("f3 f3 f3 f3");
@@ -91,7 +91,7 @@ fn runs_are_compared_given_up_and_deleted_from_the_menu() {
     console.press("down down enter");
     console.shows("Run ");
     console.press("_ _ v");
-    console.shows("Where they stand");
+    console.shows("Current figures");
     console.press("esc x");
     console.shows("without a score");
     console.press("y");

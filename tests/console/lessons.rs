@@ -285,7 +285,7 @@ fn rules_that_were_sent_answer_again_with_the_week() {
     let day = |console: &Console| console.app.run().expect("a run").company.seen.day;
     assert!(waiting(&console) > 0, "letters");
     console.press("n '0.4' enter 6 R ctrl-n 'offer_rest:_C_19'");
-    console.shows("ctrl-n empty the line");
+    console.shows("ctrl-n clear the line");
     console.press("ctrl-s n");
     console.shows("send by rules: cancelled");
     console.press("ctrl-s y");

@@ -29,7 +29,7 @@ fn nothing_offers_a_next_week() {
         for keys in ["1", "2", "3", "4", "5", "6", "7", "8", "9 esc", "0", "w", "esc"] {
             console.press(keys);
             let screen = console.screen();
-            for offer in ["n next week", "starts the next week", "n runs"] {
+            for offer in ["n next week", "Start the next week", "n runs"] {
                 assert!(!screen.contains(offer), "{size:?}, {keys}: {offer}\n{screen}");
             }
         }

@@ -228,7 +228,7 @@ fn a_run_in_use_is_watched_while_it_goes_on() {
     let mut console = Console::start(runs.path(), (120, 40));
     console.press("c");
     console.shows("open in another program");
-    console.shows("Watch it from here");
+    console.shows("Watch it here");
     console.press("y");
     console.shows("live");
     assert_eq!(day(&console), 14);
@@ -270,7 +270,7 @@ fn the_good_beginning_of_a_damaged_run_is_opened_as_a_branch() {
     std::fs::write(&path, &damaged).expect("written");
     let mut console = Console::start(runs.path(), (80, 24));
     console.press("c");
-    console.shows("Open the intact part as a branch?");
+    console.shows("Recover the undamaged part as a branch?");
     console.press("esc");
     assert_eq!(list_runs(runs.path()).expect("a list").len(), 1);
     console.press("c y");

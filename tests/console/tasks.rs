@@ -217,7 +217,7 @@ fn two_runs_are_compared() {
         let mut console = Console::start(runs.path(), size);
         console.press("down down enter");
         do_it(&mut console, "space space v", COMPARE_TWO_RUNS);
-        console.shows("Where they stand");
+        console.shows("Current figures");
     }
 }
 

@@ -41,13 +41,13 @@ fn every_view_in_windows_of_four_sizes() {
         ("quality", "esc down"),
         ("satisfaction", "down"),
         ("reputation", "down"),
-        ("spill-over", "down"),
-        ("rivals", "down"),
+        ("spillover", "down"),
+        ("competitors", "down"),
         ("drift", "down"),
         ("streams", "down e 'service' enter esc"),
         ("customer", "down enter '3' enter enter '1200' enter"),
         ("breakpoints", "esc down enter enter 'churn(S1)>1%' enter e 'event' _ 'rival' enter"),
-        ("words", "a 'who' _ 'cash' _ '42' enter"),
+        ("commands", "a 'who' _ 'cash' _ '42' enter"),
     ];
     for (view, keys) in views {
         console.press(keys);
@@ -129,7 +129,7 @@ fn a_held_factor_shows_the_expected_leads_beside() {
     console.press("enter = enter");
     console.shows("with R 1: λ");
     console.press("down = '-1' enter");
-    console.shows("D is held at a number of at least 0");
+    console.shows("D needs a number of at least 0");
     console.press("esc = '0.5' enter");
     console.shows("with R 1, D 0.5: λ");
     console.press("= up =");

@@ -1,5 +1,5 @@
-//! The screens. Each keeps where the person is in it, turns actions into effects, and draws itself from what
-//! holds; drawing changes and computes nothing that matters.
+//! The screens of a run. Each screen keeps its own position and selection, converts actions to effects and
+//! draws itself. Drawing never changes state.
 
 pub mod menu;
 pub mod panes;
@@ -15,22 +15,22 @@ use novamind_tui::canvas::Canvas;
 use novamind_worker::message::News;
 use novamind_worker::readings::Reading;
 
-/// The module of each screen.
+/// Declares the module of each screen and the struct that holds all screens.
 macro_rules! screens {
     ($($(#[$doc:meta])* $Screen:ident in $room:ident,)*) => {
         $(pub mod $room;)*
 
-        /// Every screen of a run.
+        /// The state of all screens of a run.
         #[derive(Default)]
         pub struct Screens { $($(#[$doc])* pub $room: $room::$Screen,)* }
 
         impl Screens {
-            /// A screen.
+            /// Returns a screen.
             pub fn get(&self, id: ScreenId) -> &dyn Screen {
                 match id { $(ScreenId::$Screen => &self.$room,)* }
             }
 
-            /// A screen, to change it.
+            /// Returns a screen for changes.
             pub fn get_mut(&mut self, id: ScreenId) -> &mut dyn Screen {
                 match id { $(ScreenId::$Screen => &mut self.$room,)* }
             }
@@ -39,139 +39,140 @@ macro_rules! screens {
 }
 
 screens! {
-    /// The company at a glance.
+    /// Overview of the company.
     Overview in overview,
-    /// Where money comes from and goes to.
+    /// Income, costs and cash.
     Cash in cash,
-    /// The customer groups.
+    /// Customer groups.
     Customers in customers,
-    /// Quality, capacity, issues, R&D.
+    /// Quality, capacity, issues and R&D.
     Product in product,
-    /// What people write, and our posts.
+    /// The social feed and your posts.
     Social in social,
-    /// Negotiations with companies.
+    /// Negotiations with enterprises.
     Inbox in inbox,
-    /// Groups, studies, the economy.
+    /// Groups, market studies and the economy.
     Market in market,
     /// Forms of all tools.
     Tools in tools,
-    /// The database.
+    /// SQL queries.
     Sql in sql,
-    /// What was done.
+    /// The journal of the run.
     Journal in journal,
-    /// Hidden state, where it may be shown.
+    /// Hidden state, if the run permits it.
     Xray in xray,
 }
 
-/// What a screen keeps: it is told what happened, and what the database answered.
+/// State of a screen: receives news and the results of its readings.
 pub trait ScreenState {
-    /// What it asks the database for.
+    /// Returns the readings that the screen needs from the database.
     fn readings(&self) -> &'static [Reading] {
         &[]
     }
 
-    /// Takes what the database answered.
+    /// Stores the result of a reading.
     fn take(&mut self, _: Reading, _: &Rows, _: &Look<'_>) {}
 
-    /// The person sees it now, or the company has changed while they do: what it asks the run for.
+    /// Called when the screen becomes visible, or when the company changes while it is. Returns requests to
+    /// the run.
     fn ask_run(&mut self, _: &Look<'_>) -> Vec<Effect> {
         Vec::new()
     }
 
-    /// The company has changed.
+    /// Called after the company has changed.
     fn renew(&mut self, _: &Look<'_>) {}
 
-    /// Takes news that concern it; effects follow.
+    /// Handles news that concern the screen and returns the effects that follow.
     fn hear(&mut self, _: &News, _: &Look<'_>) -> Vec<Effect> {
         Vec::new()
     }
 
-    /// Takes the answers that it waits for, if they have arrived; effects follow.
+    /// Collects answers that have arrived for the screen and returns the effects that follow.
     fn take_answers(&mut self, _: &Look<'_>) -> Vec<Effect> {
         Vec::new()
     }
 
-    /// The person sees it now, or saw it until now.
+    /// Called when the screen becomes visible and when the user leaves it.
     fn looked_at(&mut self) {}
 
-    /// How much on it was not looked at yet, for the badge.
+    /// Returns the number of unread items, for the badge.
     fn unseen(&self) -> usize {
         0
     }
 
-    /// What is open here beside a list or instead of it: a group, a tool.
+    /// Returns the name of the detail that is open next to a list or in its place: a group or a tool.
     fn open_here(&self, _: &Look<'_>) -> Option<String> {
         None
     }
 
-    /// What is open has taken the place of the list that led to it.
+    /// Returns whether the open detail has replaced the list that led to it.
     fn covers_list(&self) -> bool {
         false
     }
 
-    /// How many things esc closes here, one after the other, without those that every pane has.
+    /// Returns the number of levels that esc closes on this screen, without those that every pane has.
     fn opened(&self) -> usize {
         0
     }
 
-    /// The object that is open on it: what kind of object, and which, as the record names them.
+    /// Returns the kind and name of the open object, as the record stores them.
     fn open_object(&self, _: &Look<'_>) -> Option<(&'static str, String)> {
         None
     }
 
-    /// The text that is being edited: its place, as the record names it, and what it says.
+    /// Returns the name of the text field being edited, as the record stores it, and its contents.
     fn edited(&self) -> Option<(String, String)> {
         None
     }
 
-    /// Whether text would be lost with the program.
+    /// Returns whether unsent text would be lost if the program ended.
     fn holds_unsent_text(&self) -> bool {
         false
     }
 }
 
-/// One screen: how it acts and is drawn. Screens made of panes have it from [`panes::Paned`].
+/// A screen's behavior and appearance. Screens made of panes implement it through [`panes::Paned`].
 pub trait Screen: ScreenState {
-    /// Scopes of the focused place, the innermost first; the global one is added by the caller. A text scope first
-    /// means that characters are typed.
+    /// Returns the scopes of the focused pane, innermost first; the caller adds the global scope. If the
+    /// first is a text scope, keys type characters.
     fn scopes(&self) -> Vec<Scope>;
 
-    /// Whether a digit begins a number where the focus is, instead of showing a screen.
+    /// Returns whether a digit starts a number at the focus instead of switching screens.
     fn takes_numbers(&self) -> bool;
 
-    /// Actions worth showing in the footer.
+    /// Returns the actions for the footer.
     fn hints(&self) -> Vec<Action>;
 
-    /// The keys of its panes, those of the focused one first.
+    /// Returns the keys of all panes, those of the focused pane first.
     fn pane_keys(&self, look: &Look<'_>) -> Vec<PaneKeys>;
 
-    /// Number of panes that can have the focus.
+    /// Returns the number of panes that can take the focus.
     fn panes(&self) -> usize;
 
-    /// Number of the pane that has the focus.
+    /// Returns the index of the focused pane.
     fn focus(&self) -> usize;
 
     /// Moves the focus to a pane.
     fn set_focus(&mut self, pane: usize);
 
-    /// How many things esc closes here, one after the other.
+    /// Returns the number of levels that esc closes on this screen.
     fn depth(&self) -> usize;
 
-    /// The figure that is selected.
+    /// Returns the selected figure.
     fn figure(&self, look: &Look<'_>) -> Option<Figure>;
 
-    /// Does an action of its scopes.
+    /// Runs an action of one of its scopes.
     fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect>;
 
-    /// Takes a key that is typed into a text.
+    /// Handles a key typed into a text field.
     fn key(&mut self, key: &KeyEvent, look: &Look<'_>) -> Vec<Effect>;
 
-    /// Takes pasted text.
+    /// Handles pasted text.
     fn paste(&mut self, text: &str, look: &Look<'_>) -> Vec<Effect>;
 
-    /// A row of a pane was clicked; again if it was selected before.
+    /// Handles a click on a row. Clicking the selected row opens it.
     fn click(&mut self, pane: usize, row: usize, look: &Look<'_>) -> Vec<Effect>;
 
-    /// Draws itself.
+    /// Draws the screen.
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>);
 }

@@ -1,6 +1,7 @@
-//! Screens made of panes: what a pane is, and the host that owns the focus, borders, filters, clicks and zoom.
+//! Screens made of panes: the pane trait, and the host that manages focus, borders, filters, clicks and zoom.
 //!
-//! A screen keeps the state, because its panes share it; each pane is one type that says how its part looks and acts.
+//! The screen owns the state because its panes share it. Each pane is a type that defines the behavior and
+//! drawing of its part.
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
@@ -12,43 +13,43 @@ use crate::effect::Effect;
 use novamind_tui::canvas::{Canvas, Click};
 use novamind_tui::widgets::{Field, Table};
 
-/// What stands in the border of a pane.
+/// Texts in the border of a pane.
 #[derive(Default)]
 pub struct Border {
-    /// What the pane is.
+    /// Title, at the left.
     pub title: String,
-    /// What is worth knowing about it, at the right.
+    /// Status, at the right.
     pub note: String,
-    /// Keys that work in it, in the lower border while it has the focus.
+    /// Keys that work in the pane, shown in the lower border while it has the focus.
     pub keys: String,
-    /// The keys stand there without the focus, too: they work from every pane, or say what the pane can do.
+    /// Shows the keys even without the focus: they work from every pane or describe what the pane offers.
     pub keys_always: bool,
 }
 
-/// Where a pane is drawn.
+/// Where and how a pane is drawn.
 #[derive(Debug, Clone, Copy)]
 pub struct Seat {
-    /// Its area, or the inside of its border.
+    /// Its area, or the area inside its border.
     pub area: Rect,
     /// Whether it has the focus.
     pub focused: bool,
-    /// Its number on the screen, for clicks on its rows.
+    /// Index on the screen, for clicks on its rows.
     pub number: usize,
 }
 
-/// One pane of a screen `S`.
+/// A pane of a screen `S`.
 pub trait Pane<S> {
-    /// Its table, if it is made of one: the host moves in it, filters and sorts it.
+    /// Returns its table, if it has one; the host moves, filters and sorts it.
     fn table<'a>(&self, _: &'a S) -> Option<&'a Table> {
         None
     }
 
-    /// The same, to be changed.
+    /// Returns its table for changes.
     fn table_mut<'a>(&self, _: &'a mut S) -> Option<&'a mut Table> {
         None
     }
 
-    /// Scopes while it has the focus, the innermost first.
+    /// Returns the scopes while it has the focus, innermost first.
     fn scopes(&self, screen: &S) -> Vec<Scope> {
         match self.table(screen) {
             Some(table) if table.is_typing() => vec![Scope::Field, Scope::List],
@@ -56,22 +57,22 @@ pub trait Pane<S> {
         }
     }
 
-    /// Whether a digit begins a number here instead of showing a screen.
+    /// Returns whether a digit starts a number here instead of switching screens.
     fn takes_numbers(&self, _: &S) -> bool {
         false
     }
 
-    /// Actions worth showing in the footer.
+    /// Returns the actions for the footer.
     fn hints(&self, _: &S) -> Vec<Action> {
         Vec::new()
     }
 
-    /// The figure that is selected.
+    /// Returns the selected figure.
     fn figure(&self, _: &S, _: &Look<'_>) -> Option<Figure> {
         None
     }
 
-    /// Does an action.
+    /// Runs an action.
     fn act(&self, screen: &mut S, action: Action, look: &Look<'_>) -> Vec<Effect> {
         if let Some(table) = self.table_mut(screen) {
             table.act(action, look.page);
@@ -79,7 +80,7 @@ pub trait Pane<S> {
         Vec::new()
     }
 
-    /// Takes a key that is typed into a text.
+    /// Handles a key typed into a text field.
     fn key(&self, screen: &mut S, key: &KeyEvent, _: &Look<'_>) -> Vec<Effect> {
         self.filter(screen, &mut |field| {
             field.key(key);
@@ -87,20 +88,20 @@ pub trait Pane<S> {
         Vec::new()
     }
 
-    /// Takes pasted text.
+    /// Handles pasted text.
     fn paste(&self, screen: &mut S, text: &str, _: &Look<'_>) -> Vec<Effect> {
         self.filter(screen, &mut |field| field.insert(text));
         Vec::new()
     }
 
-    /// Changes the filter while it is typed.
+    /// Edits the filter.
     fn filter(&self, screen: &mut S, edit: &mut dyn FnMut(&mut Field)) {
         if let Some(table) = self.table_mut(screen) {
             table.edit_filter(edit);
         }
     }
 
-    /// A row was clicked; a second click on the same row opens it.
+    /// Handles a click on a row; a second click on the same row opens it.
     fn click(&self, screen: &mut S, row: usize, look: &Look<'_>) -> Vec<Effect> {
         let Some(table) = self.table_mut(screen) else { return Vec::new() };
         let before = table.selected();
@@ -108,24 +109,24 @@ pub trait Pane<S> {
         if before == table.selected() { self.act(screen, Action::Open, look) } else { Vec::new() }
     }
 
-    /// What stands in its border when it has an area.
+    /// Returns the texts of its border for an area.
     fn border(&self, _: &S, _: Rect, _: &Look<'_>) -> Border {
         Border::default()
     }
 
-    /// Draws its inside.
+    /// Draws the inside of the pane.
     fn draw(&self, screen: &S, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>);
 
-    /// Draws all of it into its area; a pane of more than one box does so itself.
+    /// Draws the pane with its border. Panes with more than one box override this.
     fn show(&self, screen: &S, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
         draw_framed(self, screen, canvas, seat, look);
     }
 }
 
-/// An area that has room for a whole title.
+/// An area wide enough for complete titles.
 const USUAL: Rect = Rect { x: 0, y: 0, width: 120, height: 40 };
 
-/// Draws the border of a pane and its inside into an area.
+/// Draws the border and the inside of a pane.
 pub fn draw_framed<S>(
     pane: &(impl Pane<S> + ?Sized),
     screen: &S,
@@ -143,36 +144,37 @@ pub fn draw_framed<S>(
 
 /// A screen made of panes.
 pub trait Paned: ScreenState + Sized + 'static {
-    /// Names of its panes.
+    /// Identifiers of its panes.
     type Name: Copy + PartialEq + 'static;
 
-    /// The panes that can have the focus now, in the order of the tab key.
+    /// Returns the panes that can take the focus now, in tab order.
     fn panes(&self) -> &'static [Self::Name];
 
-    /// What a name stands for.
+    /// Returns the pane with this identifier.
     fn pane(name: Self::Name) -> &'static dyn Pane<Self>;
 
-    /// The pane with the focus.
+    /// Returns the focused pane.
     fn focused(&self) -> Self::Name;
 
     /// Moves the focus to a pane.
     fn focus_on(&mut self, name: Self::Name);
 
-    /// What lies over the panes for a while and takes every key; clicks on its rows have the number of panes.
+    /// Returns the overlay that temporarily covers the panes and takes every key. Clicks on its rows use the
+    /// number of panes as index.
     fn over(&self) -> Option<&'static dyn Pane<Self>> {
         None
     }
 
-    /// Does what an action means whichever pane has the focus; none where that depends on the pane.
+    /// Runs an action that does not depend on the focused pane; returns `None` if it does.
     fn act_anywhere(&mut self, _: Action, _: &Look<'_>) -> Option<Vec<Effect>> {
         None
     }
 
-    /// Lays the panes out, each with [`draw_pane`].
+    /// Lays out the panes and draws each with [`draw_pane`].
     fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>);
 }
 
-/// Draws a pane where it can be clicked.
+/// Draws a pane and makes it clickable.
 pub fn draw_pane<S: Paned>(screen: &S, name: S::Name, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
     if area.is_empty() {
         return;
@@ -187,7 +189,6 @@ fn number_of<S: Paned>(screen: &S, name: S::Name) -> usize {
     screen.panes().iter().position(|own| *own == name).unwrap_or(0)
 }
 
-/// What takes the keys.
 fn focused<S: Paned>(screen: &S) -> &'static dyn Pane<S> {
     screen.over().unwrap_or_else(|| S::pane(screen.focused()))
 }
@@ -261,7 +262,7 @@ impl<S: Paned> Screen for S {
     }
 
     fn click(&mut self, pane: usize, row: usize, look: &Look<'_>) -> Vec<Effect> {
-        // What lies below can be seen but not clicked.
+        // Panes below the overlay are visible but not clickable.
         if self.over().is_some() && pane < Screen::panes(self) {
             return Vec::new();
         }

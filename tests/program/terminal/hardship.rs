@@ -8,7 +8,7 @@ fn a_small_window_asks_for_a_larger_one_and_growing_brings_the_screen() {
     let mut terminal = Terminal::start(runs.path(), &["--new", "--seed", "1"], (40, 5));
     terminal.wait_for("NovaMind needs 60×16");
     terminal.resize(100, 30);
-    terminal.wait_for("Needs you");
+    terminal.wait_for("Action needed");
     terminal.resize(20, 5);
     terminal.wait_for("NovaMind needs 60×");
     terminal.type_keys("q");
@@ -30,7 +30,7 @@ fn termination_restores_the_terminal_and_keeps_the_run() {
 fn a_stopped_program_gives_the_terminal_back_and_takes_it_again() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &["--new"], (100, 30));
-    terminal.wait_for("Needs you");
+    terminal.wait_for("Action needed");
     assert!(terminal.is_raw());
     for _ in 0..2 {
         terminal.signal("-TSTP");
@@ -38,7 +38,7 @@ fn a_stopped_program_gives_the_terminal_back_and_takes_it_again() {
         assert!(!terminal.is_raw(), "the terminal accepts input again");
         terminal.wait_for_bytes(b"\x1b[?1049l");
         terminal.signal("-CONT");
-        terminal.wait_for("Needs you");
+        terminal.wait_for("Action needed");
         terminal.wait_until_raw();
     }
     // There is no prompt before this one; another program may leave the terminal in any state.
@@ -58,7 +58,7 @@ fn a_stopped_program_gives_the_terminal_back_and_takes_it_again() {
 fn a_full_disk_is_told_and_forgotten_once_there_is_room() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &["--new"], (120, 40));
-    terminal.wait_for("Needs you");
+    terminal.wait_for("Action needed");
     let entries = std::fs::read_dir(runs.path()).expect("a folder").flatten().map(|entry| entry.path());
     let run = entries.into_iter().find(|path| path.is_dir()).expect("a run");
     let written = std::fs::metadata(run.join("world.db-wal")).expect("a database").len();
@@ -83,10 +83,10 @@ fn a_full_disk_is_told_and_forgotten_once_there_is_room() {
 fn the_screen_is_drawn_again_on_request() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &["--new"], (100, 30));
-    terminal.wait_for("Needs you");
+    terminal.wait_for("Action needed");
     terminal.forget();
     terminal.type_keys("\x0c");
-    terminal.wait_for("Needs you");
+    terminal.wait_for("Action needed");
     terminal.type_keys("q");
     assert_eq!(terminal.end().0, 0);
 }
@@ -95,7 +95,7 @@ fn the_screen_is_drawn_again_on_request() {
 fn the_farewell_names_whose_run_goes_on() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &["--as", "P01", "--new"], (120, 30));
-    terminal.wait_for("Needs you");
+    terminal.wait_for("Action needed");
     terminal.type_keys("q");
     let (code, screen) = terminal.end();
     assert_eq!(code, 0);
@@ -110,7 +110,7 @@ fn the_farewell_names_whose_run_goes_on() {
 fn what_was_chosen_by_key_is_there_the_next_time() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &["--new"], (100, 30));
-    terminal.wait_for("Needs you");
+    terminal.wait_for("Action needed");
     assert!(!terminal.contents().is_ascii());
     terminal.type_keys(";c");
     terminal.wait_for("theme: high-contrast");
@@ -125,7 +125,7 @@ fn what_was_chosen_by_key_is_there_the_next_time() {
     assert_eq!(terminal.end().0, 0);
     assert!(std::fs::read_to_string(&chosen).expect("a file").contains("high-contrast"));
     let mut terminal = Terminal::start(runs.path(), &["--run", "latest"], (100, 30));
-    terminal.wait_for("Needs you");
+    terminal.wait_for("Action needed");
     assert!(terminal.contents().is_ascii(), "{}", terminal.contents());
     terminal.type_keys("q");
     assert_eq!(terminal.end().0, 0);
@@ -150,7 +150,7 @@ fn ascii_and_no_colour_are_honoured() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &["--ascii", "--theme", "mono", "--new"], (100, 30));
     terminal.wait_for("day 0/500");
-    terminal.wait_for("Needs you");
+    terminal.wait_for("Action needed");
     let contents = terminal.contents();
     assert!(contents.is_ascii(), "{contents}");
     terminal.type_keys("q");
@@ -167,7 +167,7 @@ fn without_colour_no_colour_is_written() {
         &[("NO_COLOR", "1"), ("COLORTERM", "truecolor")],
     );
     terminal.wait_for("day 0/500");
-    terminal.wait_for("Needs you");
+    terminal.wait_for("Action needed");
     let colours = sequences(terminal.written()).into_iter().filter(|parameters| sets_colour(parameters));
     assert_eq!(colours.collect::<Vec<_>>(), Vec::<String>::new());
     terminal.type_keys("q");

@@ -8,7 +8,7 @@ fn a_person_starts_plays_two_weeks_leaves_and_continues() {
     let mut terminal = Terminal::start(runs.path(), &[], (120, 40));
     terminal.wait_for("New run");
     terminal.type_keys("n");
-    terminal.wait_for("enter starts the run");
+    terminal.wait_for("Start the run (enter)");
     terminal.type_keys("\r");
     terminal.wait_for("day 0/500");
     terminal.type_keys("8\r\r12\t25\t55\r");

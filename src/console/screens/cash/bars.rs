@@ -1,4 +1,4 @@
-//! Bars of the weeks: income above the line, costs below, made of their categories.
+//! Stacked bars by week: income above the line, costs below.
 
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
@@ -7,22 +7,19 @@ use ratatui::symbols::Marker;
 use super::model::{Amounts, Books, CATEGORIES, COUNT, money, side};
 use super::{Cash, ledger_rows, week_keys};
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_tui::canvas::{Align, Canvas, Click, fit};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Unit;
 use novamind_tui::widgets::scale::ticks;
 
-/// Narrowest column of a week, with the gap.
+/// Minimum width of a week, with the gap.
 const NARROWEST: u16 = 3;
-/// Widest.
 const WIDEST: u16 = 9;
-/// Width of the figures at the side.
 const SIDE: u16 = 8;
 
-/// Every week as a bar.
 pub struct BarsPane;
 
 impl Pane<Cash> for BarsPane {
@@ -37,7 +34,7 @@ impl Pane<Cash> for BarsPane {
     fn act(&self, cash: &mut Cash, action: Action, look: &Look<'_>) -> Vec<Effect> {
         match action {
             Action::Open => return ledger_rows(cash.subject_of_week()),
-            // Up and down choose the category whose weeks are compared.
+            // Up and down select the category to compare.
             action if !cash.walk_weeks(action) => {
                 cash.table.act(action, look.page);
             }
@@ -70,7 +67,7 @@ impl Pane<Cash> for BarsPane {
     }
 }
 
-/// Draws the bars. `pane` is the number of the pane for clicks, whose rows are the weeks.
+/// Draws the bars. `pane` is the index for clicks, whose rows are the weeks.
 fn draw(canvas: &mut Canvas<'_>, area: Rect, books: &Books, selected: u32, pane: usize) {
     if area.width < SIDE + 2 * NARROWEST || area.height < 5 {
         return;
@@ -121,7 +118,7 @@ fn draw(canvas: &mut Canvas<'_>, area: Rect, books: &Books, selected: u32, pane:
     }
 }
 
-/// Rows above and below the line, and the dollars of a row.
+/// Rows above and below the line, and dollars per row.
 #[derive(Debug, PartialEq)]
 struct BarScale {
     above: u16,
@@ -146,14 +143,14 @@ impl BarScale {
         BarScale { above, below, dollars: per_row(income, above).max(per_row(costs, below)) }
     }
 
-    /// Row of a value, counted from the highest; values within a row share it.
+    /// Returns the row of a value, counted from the top.
     fn row(&self, value: f64) -> u16 {
         let rows = (value.abs() / self.dollars).ceil() as u16;
         if value < 0.0 { self.above + rows.min(self.below) } else { self.above - rows.min(self.above) }
     }
 }
 
-/// The line of zero, and round values beside the rows they end in.
+/// Draws the zero line, and round values next to the rows in which they end.
 fn draw_side(canvas: &mut Canvas<'_>, area: Rect, scale: &BarScale) {
     let line = Rect { y: area.y + scale.above, height: 1, ..area };
     canvas.text(line, &"─".repeat(area.width as usize), Role::Border);
@@ -171,10 +168,10 @@ fn draw_side(canvas: &mut Canvas<'_>, area: Rect, scale: &BarScale) {
     }
 }
 
-/// Where a category ends in a bar, in eighths of a row from the line.
+/// A category and where it ends in a bar, in eighths of a row from the line.
 type BarEnd = (usize, u32);
 
-/// The parts of one side of a bar, from the line outwards.
+/// Returns the categories on one side of a bar, from the line outwards.
 fn parts(amounts: &Amounts, income: bool, scale: &BarScale, rows: u16) -> Vec<BarEnd> {
     let mut sum = 0.0;
     let own = CATEGORIES.iter().enumerate().filter(|(_, category)| category.income == income);
@@ -185,7 +182,8 @@ fn parts(amounts: &Amounts, income: bool, scale: &BarScale, rows: u16) -> Vec<Ba
     end.collect()
 }
 
-/// What stands in a row of eighths: the category next to the line, how far it reaches, and the one beyond it.
+/// Returns the two parts drawn in a row of eighths: the category next to the line, its size, and the category
+/// beyond it.
 fn in_row(parts: &[BarEnd], row: u16) -> Option<(usize, u32, Option<usize>)> {
     let (from, to) = (u32::from(row) * 8, u32::from(row) * 8 + 8);
     let mut start = 0;
@@ -198,7 +196,7 @@ fn in_row(parts: &[BarEnd], row: u16) -> Option<(usize, u32, Option<usize>)> {
         start = *end;
     }
     let filled: u32 = shares.iter().map(|(_, share)| share).sum();
-    // A cell has two colours: the smallest parts of three or more give way to those beside them.
+    // A cell has two colors, so the smallest of three or more parts are merged into their neighbors.
     while shares.len() > 2 || (shares.len() == 2 && filled < 8) {
         let (least, _) = shares.iter().enumerate().min_by_key(|(_, (_, share))| *share)?;
         let (_, share) = shares.remove(least);
@@ -208,8 +206,8 @@ fn in_row(parts: &[BarEnd], row: u16) -> Option<(usize, u32, Option<usize>)> {
     Some((near, share, shares.get(1).map(|(beyond, _)| *beyond)))
 }
 
-/// Draws the bar of a week: eighths of a row in one colour a category, or whole rows of signs where colours cannot tell
-/// the categories apart.
+/// Draws the bar of a week: eighths of rows in the color of each category, or whole rows of glyphs if colors
+/// are not available.
 fn draw_week(canvas: &mut Canvas<'_>, column: Rect, line: u16, amounts: &Amounts, scale: &BarScale) {
     let coloured = in_colours(canvas);
     for income in [true, false] {
@@ -231,12 +229,12 @@ fn draw_week(canvas: &mut Canvas<'_>, column: Rect, line: u16, amounts: &Amounts
     }
 }
 
-/// Whether colours tell the categories apart.
 fn in_colours(canvas: &Canvas<'_>) -> bool {
     canvas.marker != Marker::Dot && canvas.theme.colours_apart(COUNT)
 }
 
-/// Draws a cell of which some eighths beside the line are of one category, and the others of another or empty.
+/// Draws a cell of which some eighths next to the line belong to one category, and the rest to another or
+/// none.
 fn draw_eighths(
     canvas: &mut Canvas<'_>,
     cell: Rect,
@@ -246,7 +244,7 @@ fn draw_eighths(
 ) {
     const BLOCKS: [&str; 9] = [" ", "▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"];
     let colour = |category: usize| canvas.style(Role::Series(category)).fg;
-    // Blocks grow from below: downwards, the block is what the near category leaves free.
+    // Block glyphs fill from below. Below the line, the block is the part that the near category leaves free.
     let lower = if up { eighths } else { 8 - eighths };
     let style = match (up, beyond) {
         _ if eighths >= 8 => Style { fg: colour(near), ..Style::new() },
@@ -267,7 +265,7 @@ fn draw_net(canvas: &mut Canvas<'_>, place: Rect, amounts: &Amounts) {
     canvas.aligned(place, &fit(&text, place.width as usize), role, Align::Right);
 }
 
-/// Lines of the legend: categories that were booked, with their text.
+/// Returns the lines of the legend: categories with entries, and their text.
 fn legend(books: &Books, width: usize) -> Vec<Vec<(usize, String)>> {
     let mut lines: Vec<Vec<(usize, String)>> = Vec::new();
     let mut used = width;
@@ -275,7 +273,7 @@ fn legend(books: &Books, width: usize) -> Vec<Vec<(usize, String)>> {
         if !books.is_used(at) {
             continue;
         }
-        // The sign of the category is drawn over the first column.
+        // The glyph of the category is drawn over the first column.
         let text = format!("  {}", category.name());
         let length = text.chars().count() + 2;
         if used + length > width + 2 || lines.is_empty() {
@@ -311,20 +309,15 @@ mod tests {
         (amounts[0], amounts[1]) = (90.0, 40.0);
         let income = parts(&amounts, true, &scale, 3);
         assert_eq!(in_row(&income, 0), Some((0, 8, None)));
-        assert_eq!(
-            in_row(&income, 1),
-            Some((1, 5, None)),
-            "what is above the bar leaves one colour to the cell"
-        );
+        assert_eq!(in_row(&income, 1), Some((1, 5, None)), "the empty part leaves one color for the cell");
         assert_eq!(in_row(&income, 2), None);
         (amounts[3], amounts[4], amounts[5], amounts[6]) = (-20.0, -10.0, -45.0, -500.0);
         let costs = parts(&amounts, false, &scale, 3);
         assert_eq!(in_row(&costs, 0), Some((3, 3, Some(5))));
         assert_eq!(in_row(&costs, 1), Some((6, 8, None)));
-        assert_eq!(costs.last(), Some(&(11, 24)), "no bar leaves its room");
+        assert_eq!(costs.last(), Some(&(11, 24)), "no bar exceeds its area");
     }
 
-    /// The bars of a company as cells, in a theme and with a marker.
     fn painted(theme: &str, marker: Marker) -> ratatui::buffer::Buffer {
         use crate::test_kit::played;
         let books = Books::of(&novamind_worker::company::Company::of(&played(6)));

@@ -1,13 +1,13 @@
-//! The books of a week: every category with its change, its mean and its share.
+//! The ledger of a week: every category with its change, mean and share.
 
 use ratatui::layout::Rect;
 
 use super::model::{Amounts, Books, CATEGORIES, Subject, days_of, money, side};
 use super::{Cash, Selected, ledger_rows};
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, dollars, percent, short_dollars};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::text::arrow;
@@ -15,7 +15,6 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell, Column, Table};
 use novamind_worker::company::Company;
 
-/// The table of a week.
 pub struct BooksPane;
 
 impl Pane<Cash> for BooksPane {
@@ -51,7 +50,7 @@ impl Pane<Cash> for BooksPane {
     fn border(&self, cash: &Cash, _: Rect, look: &Look<'_>) -> Border {
         let open = look.keys.label(Action::Open).unwrap_or_default();
         Border {
-            title: format!("Books of {}", week_words(cash.week(), look.company)),
+            title: format!("Ledger of {}", week_words(cash.week(), look.company)),
             note: match cash.table.note() {
                 note if note.is_empty() => format!("{} now", dollars(look.company.seen.cash)),
                 note => note,
@@ -66,7 +65,7 @@ impl Pane<Cash> for BooksPane {
     }
 }
 
-/// The subject of the selected row, in the weeks of the selected column.
+/// Returns the subject of the selected row, in the weeks of the selected column.
 fn selected(cash: &Cash) -> Option<Selected> {
     let (subject, week) = (cash.subject()?, cash.week());
     let weeks = match cash.table.selected_column() {
@@ -85,7 +84,7 @@ fn week_words(week: u32, company: &Company) -> String {
     format!("week {week} · days {from} to {}", to.min(company.seen.day.max(from)))
 }
 
-/// The table of a week: columns, what its rows are about, rows.
+/// Returns the table of a week: columns, subjects of the rows, rows.
 pub fn table_of(books: &Books, week: u32) -> (Vec<Column>, Vec<Subject>, Vec<Vec<Cell>>) {
     let before = week.saturating_sub(1);
     let columns = vec![
@@ -97,7 +96,7 @@ pub fn table_of(books: &Books, week: u32) -> (Vec<Column>, Vec<Subject>, Vec<Vec
         Column::numbers("run total"),
         Column::numbers("share"),
     ];
-    // Sums stand above their parts: what a small window cuts off is detail.
+    // Sums come before their parts, because small windows cut the end.
     let mut subjects = vec![Subject::Net];
     for income in [true, false] {
         let used = |at: &usize| CATEGORIES[*at].income == income && books.is_used(*at);
@@ -117,7 +116,7 @@ fn row_of(subject: &Subject, all: &[Amounts; 4], week: u32) -> Vec<Cell> {
         Subject::Costs => (false, Role::Strong),
         Subject::Income | Subject::Net => (true, Role::Strong),
     };
-    // More of a cost is more, not less: its change goes by its size.
+    // The change of a cost refers to its absolute value.
     let change = if income { now - before } else { before - now };
     let change_role = match change {
         0.0 => Role::Dim,

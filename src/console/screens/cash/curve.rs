@@ -1,13 +1,13 @@
-//! Cash by day with the week that is looked at, and how much each week changed it.
+//! Cash by day with the selected week, and the change by week.
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
 use super::model::{Subject, cash_around, days_of};
 use super::{Cash, Selected, ledger_rows, week_keys};
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{dollars, short_dollars};
 use novamind_tui::canvas::{Align, Canvas};
 use novamind_tui::text::arrow;
@@ -16,10 +16,8 @@ use novamind_tui::widgets::chart::{note_room, summary, zero_if_near};
 use novamind_tui::widgets::{Axis, Line, Plot, Side, Unit};
 use novamind_worker::company::Company;
 
-/// Width of the figures beside the bars of the weeks.
 const SIDE: u16 = 8;
 
-/// Cash by day.
 pub struct CurvePane;
 
 impl Pane<Cash> for CurvePane {
@@ -51,7 +49,7 @@ impl Pane<Cash> for CurvePane {
         Border { title: title.to_owned(), note, keys: week_keys(look), ..Border::default() }
     }
 
-    /// The curve, and below it the change of every week where there is room.
+    /// Draws the curve, and the change of every week below it if it fits.
     fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
         let (company, week) = (look.company, cash.week());
         let changes = if seat.area.height >= 11 { seat.area.height / 3 } else { 0 };
@@ -70,12 +68,12 @@ impl Pane<Cash> for CurvePane {
     }
 }
 
-/// What the week that is looked at earned.
+/// Returns the net result of the selected week.
 fn net(cash: &Cash) -> Option<Selected> {
     Some((Subject::Net, (cash.week(), cash.week())))
 }
 
-/// Bars of the weekly changes, the newest at the right: gains above the line, losses below.
+/// Draws the weekly changes as bars, newest at the right: gains above the line, losses below.
 fn draw_changes(canvas: &mut Canvas<'_>, area: Rect, company: &Company, selected: u32) {
     if area.height < 3 || area.width < SIDE + 8 {
         return;

@@ -1,13 +1,13 @@
-//! Forecasts against what happened: a curve with the 95 % band, and every forecast with its outcome.
+//! Forecasts and outcomes: a curve with the 95 % intervals, and a table.
 
 use ratatui::layout::{Constraint, Layout, Rect};
 use unicode_width::UnicodeWidthStr;
 
 use super::Cash;
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{percent, short_dollars};
 use novamind_session::{ScoredForecast, Verdict, filed_forecasts};
 use novamind_tui::canvas::Canvas;
@@ -16,7 +16,6 @@ use novamind_tui::widgets::chart::note_room;
 use novamind_tui::widgets::{Axis, Band, Cell, Column, Line, Plot, Side, Table, Unit};
 use novamind_worker::company::Company;
 
-/// Forecasts of one horizon, as a curve and as a list.
 pub struct ForecastsPane;
 
 impl Pane<Cash> for ForecastsPane {
@@ -46,7 +45,7 @@ impl Pane<Cash> for ForecastsPane {
         let horizons = format!("{} {} other horizons", label(Action::Left), label(Action::Right));
         let weeks = cash.outlook.horizon() / 7;
         let title = format!("Forecasts {weeks} week{} ahead", if weeks == 1 { "" } else { "s" });
-        // Half a figure would be a wrong one.
+        // Do not show a figure that is cut off.
         let room = note_room(area, &title);
         let scores = cash.outlook.scores(look.company);
         let note = scores.into_iter().find(|note| note.width() <= room).unwrap_or_default();
@@ -61,7 +60,10 @@ impl Pane<Cash> for ForecastsPane {
     fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
         let (outlook, inside) = (&cash.outlook, seat.area);
         if outlook.all.is_empty() {
-            let text = format!("no forecasts yet: {} asks for four", look.hint(Action::NextWeek));
+            let text = format!(
+                "No forecasts yet. You file four before each week ({}).",
+                look.hint(Action::NextWeek)
+            );
             canvas.text(inside, &text, Role::Dim);
             return;
         }
@@ -72,18 +74,15 @@ impl Pane<Cash> for ForecastsPane {
     }
 }
 
-/// Forecasts of one horizon.
 #[derive(Default)]
 pub struct Outlook {
     all: Vec<ScoredForecast>,
     horizons: Vec<u32>,
-    /// Place of the horizon that is shown.
     horizon: usize,
     table: Table,
 }
 
 impl Outlook {
-    /// Takes what was filed.
     pub fn renew(&mut self, company: &Company) {
         self.all = filed_forecasts(&company.journal, &company.cash_by_day);
         self.horizons = company.scores.iter().map(|score| score.horizon_days).collect();
@@ -94,7 +93,7 @@ impl Outlook {
         self.horizons.get(self.horizon).copied().unwrap_or(7)
     }
 
-    /// Forecasts of the horizon that is shown, in the order of filing.
+    /// Returns the forecasts of the shown horizon, in order of filing.
     fn shown(&self) -> impl DoubleEndedIterator<Item = &ScoredForecast> {
         let horizon = self.horizon();
         self.all.iter().filter(move |filed| filed.forecast.horizon_days == horizon)
@@ -106,15 +105,14 @@ impl Outlook {
             Column::numbers("low"),
             Column::numbers("point"),
             Column::numbers("high"),
-            Column::numbers("was"),
-            Column::numbers("point was"),
+            Column::numbers("actual"),
+            Column::numbers("error"),
             Column::words("95 %"),
         ];
         let rows = self.listed().map(row_of).collect();
         self.table.set(columns, rows);
     }
 
-    /// Does an action.
     fn act(&mut self, action: Action, page: u16) {
         let last = self.horizons.len().saturating_sub(1);
         match action {
@@ -130,14 +128,13 @@ impl Outlook {
         self.table.act(Action::First, page);
     }
 
-    /// Forecasts in the order of the table: what is known comes first, the newest at the top; what is still open
-    /// follows.
+    /// Returns the forecasts in table order: due forecasts, newest first, then open ones.
     fn listed(&self) -> impl Iterator<Item = &ScoredForecast> {
         let known = self.shown().filter(|one| one.outcome.is_some()).rev();
         known.chain(self.shown().filter(|one| one.outcome.is_none()))
     }
 
-    /// The forecast that is selected.
+    /// Returns the selected forecast, with a query for its rows.
     fn figure(&self) -> Option<Figure> {
         let filed = self.listed().nth(self.table.selected()?)?;
         let sql = format!(
@@ -149,21 +146,21 @@ impl Outlook {
         Some(Figure { title, term: "forecast", sql: Some(sql), why: None })
     }
 
-    /// How the horizon turned out, the longest words first.
+    /// Returns the results of the horizon, longest wording first.
     fn scores(&self, company: &Company) -> Vec<String> {
         match company.scores.get(self.horizon).filter(|score| score.scored > 0) {
             Some(score) if !company.shows_calibration() => vec![format!("{} came due", score.scored)],
             Some(score) => {
                 let (inside, miss) =
                     (format!("{} of {} inside", score.covered, score.scored), percent(score.mean_error, 1));
-                vec![format!("{inside} · typical miss {miss}"), format!("{inside} · miss {miss}"), inside]
+                vec![format!("{inside} · mean error {miss}"), format!("{inside} · error {miss}"), inside]
             }
-            None => vec!["none has come due".to_owned()],
+            None => vec!["none due yet".to_owned()],
         }
     }
 
     fn draw_curve(&self, canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
-        // Open forecasts of far horizons would flatten what has happened.
+        // Open forecasts of long horizons would compress the past.
         let until = f64::from(company.seen.day) * 1.15 + 14.0;
         let near = || self.shown().filter(|filed| f64::from(filed.due()) <= until);
         let day = |filed: &ScoredForecast| f64::from(filed.due());

@@ -1,4 +1,4 @@
-//! Where money comes from and goes to: the books by category and week, the way of the cash, forecasts.
+//! Income and costs: the ledger by category and week, the change of cash, and forecasts.
 
 mod bars;
 mod books;
@@ -15,51 +15,49 @@ use strum::VariantArray;
 use self::books::table_of;
 use self::forecasts::Outlook;
 use self::model::{Books, CashStep, Subject, statement, waterfall};
-use super::panes::{Pane, Paned, draw_pane};
-use crate::context::{Figure, Look};
 use super::ScreenState;
+use super::panes::{Pane, Paned, draw_pane};
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use novamind_insight::WeekQuantity;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
 use novamind_worker::company::Company;
 
-/// Its panes, in the order of the tab key.
+/// Panes in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
 pub enum CashPane {
     /// The week by category.
     #[default]
     Books,
-    /// Every week as a bar.
+    /// Bars of all weeks.
     Weeks,
-    /// Forecasts against what happened.
+    /// Forecasts and outcomes.
     Forecasts,
-    /// From last week's cash to this week's.
+    /// Change of cash within the week.
     Waterfall,
     /// Cash by day.
     Curve,
 }
 
-/// Narrowest window in which the way of the cash and its curve stand beside the books.
+/// Minimum width for the waterfall and the curve next to the ledger.
 const WIDE: u16 = 176;
 
-/// The screen.
+/// The cash screen.
 #[derive(Default)]
 pub struct Cash {
     focus: CashPane,
     books: Books,
-    /// The week that is looked at; none for the last one.
+    /// The selected week; `None` for the last one.
     week: Option<u32>,
     table: Table,
-    /// What the rows of the table are about.
     subjects: Vec<Subject>,
     outlook: Outlook,
-    /// Step of the way from week to week that is selected.
     step: usize,
 }
 
-/// What is selected in the panes of the books: a subject, with the first and the last of its weeks.
+/// Selection in the ledger panes: a subject, with its first and last week.
 type Selected = (Subject, (u32, u32));
 
 impl Cash {
@@ -68,7 +66,6 @@ impl Cash {
         self.week.unwrap_or(last).min(last)
     }
 
-    /// Makes the table of the week that is looked at.
     fn refresh(&mut self) {
         let (columns, subjects, rows) = table_of(&self.books, self.week());
         if self.subjects.is_empty() {
@@ -88,7 +85,7 @@ impl Cash {
         self.refresh();
     }
 
-    /// What every pane of weeks does with the keys that move; false if it can do nothing with the action.
+    /// Handles keys that change the week; returns false for other actions.
     fn walk_weeks(&mut self, action: Action) -> bool {
         match action {
             Action::Left => self.move_week(-1),
@@ -100,17 +97,16 @@ impl Cash {
         true
     }
 
-    /// The subject of the selected row of the books.
     fn subject(&self) -> Option<Subject> {
         self.table.selected().and_then(|row| self.subjects.get(row)).copied()
     }
 
-    /// The subject of the selected row, in the week that is looked at.
+    /// Returns the subject of the selected row in the selected week.
     fn subject_of_week(&self) -> Option<Selected> {
         Some((self.subject()?, (self.week(), self.week())))
     }
 
-    /// The steps from the cash of the week before to that of the week.
+    /// Returns the steps from the previous week's cash to the selected week's.
     fn steps(&self, company: &Company) -> Vec<CashStep> {
         waterfall(&self.books, company, self.week(), usize::MAX)
     }
@@ -123,19 +119,18 @@ impl Cash {
             (from, to) => format!("weeks {from} to {to}"),
         };
         let title = format!("{} of {weeks}", subject.name());
-        let figure = Figure { title, term: subject.term(), sql: Some(statement(&subject, (from, to))), why: None };
+        let figure =
+            Figure { title, term: subject.term(), sql: Some(statement(&subject, (from, to))), why: None };
         let quantity = subject.figure().and_then(WeekQuantity::of_company);
-        // What was bought since the last week belongs to one that has not run.
+        // Purchases since the last week belong to a week that has not been simulated.
         Some(figure.of_week(quantity.filter(|_| to <= self.books.last()), to))
     }
 }
 
-/// The statement whose answer are the rows of the ledger behind what is selected.
 fn ledger_rows(selected: Option<Selected>) -> Vec<Effect> {
     selected.map(|(subject, weeks)| Effect::RunSql(statement(&subject, weeks))).into_iter().collect()
 }
 
-/// Keys of the panes that go from week to week.
 fn week_keys(look: &Look<'_>) -> String {
     let label = |action| look.keys.label(action).unwrap_or_default();
     let keys = format!("{} {} another week", label(Action::Left), label(Action::Right));
@@ -183,7 +178,7 @@ impl Paned for Cash {
         if area.width >= 104 && area.height >= 30 {
             return self.arrange_large(canvas, area, look);
         }
-        // In a small window the pane with the focus gets the larger part.
+        // In small windows the focused pane gets the larger part.
         let rows = self.table.rows().len() as u16 + 3;
         let (upper, below) = match self.focus {
             CashPane::Books => {
@@ -198,7 +193,7 @@ impl Paned for Cash {
 }
 
 impl Cash {
-    /// Books, way and curve above, weeks and forecasts below.
+    /// Draws the ledger, waterfall and curve above the weeks and forecasts.
     fn arrange_large(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let rows = self.table.rows().len() as u16 + 3;
         let [top, below] = Layout::vertical([
@@ -217,7 +212,7 @@ impl Cash {
             draw_pane(self, CashPane::Waterfall, canvas, steps, look);
             draw_pane(self, CashPane::Curve, canvas, curve, look);
         } else {
-            // The curve comes to the front with the focus.
+            // The curve replaces the waterfall while it has the focus.
             let front = if self.focus == CashPane::Curve { CashPane::Curve } else { CashPane::Waterfall };
             draw_pane(self, front, canvas, beside, look);
         }

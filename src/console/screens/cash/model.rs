@@ -1,26 +1,22 @@
-//! The books: dollars by week and category, steps from one week's cash to the next, forecasts with their outcome.
+//! Ledger amounts by week and category, and the steps of the waterfall.
 
 use std::collections::BTreeMap;
 
-use novamind_worker::company::Company;
 use novamind_base::notation::grouped;
-use novamind_report::category_name;
 use novamind_record::figures::{Booked, WeekFigure};
+use novamind_report::category_name;
 use novamind_session::{Category, entries_of_weeks, week_of};
+use novamind_worker::company::Company;
 
-/// A category of the ledger on this screen.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Shown {
-    /// Category.
     pub category: Category,
-    /// What its part of a bar is made of; different without colours, and without blocks.
+    /// Glyph in bars; unique, for terminals without colors or block glyphs.
     pub glyph: char,
-    /// Money that comes in.
     pub income: bool,
 }
 
 impl Shown {
-    /// Name on screen.
     pub fn name(&self) -> &'static str {
         category_name(self.category)
     }
@@ -30,10 +26,9 @@ const fn shown(category: Category, glyph: char, income: bool) -> Shown {
     Shown { category, glyph, income }
 }
 
-/// Number of categories.
 pub const COUNT: usize = Category::ALL.len();
 
-/// All categories: income, then costs.
+/// All categories, income first.
 pub static CATEGORIES: [Shown; COUNT] = [
     shown(Category::SubscriptionPayment, '█', true),
     shown(Category::AdRevenue, '░', true),
@@ -52,16 +47,15 @@ pub static CATEGORIES: [Shown; COUNT] = [
 /// Dollars by category; costs are negative.
 pub type Amounts = [f64; COUNT];
 
-/// Dollars by week and category, from the first week on: the opening cash is no income.
+/// Dollars by week and category from the first week, without the opening cash.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Books {
     weeks: BTreeMap<u32, Amounts>,
-    /// The last week that ran; what was bought since belongs to the next.
+    /// The last simulated week; later purchases belong to the next one.
     last: u32,
 }
 
 impl Books {
-    /// The books of a company.
     pub fn of(company: &Company) -> Books {
         let last = week_of(company.seen.day);
         let mut weeks = BTreeMap::new();
@@ -72,22 +66,21 @@ impl Books {
         Books { weeks, last }
     }
 
-    /// The last week that ran.
+    /// Returns the last simulated week.
     pub fn last(&self) -> u32 {
         self.last
     }
 
-    /// The week that is open: it holds what was bought since the last one ended.
+    /// Returns the week with the purchases since the last simulated one.
     pub fn open_week(&self) -> u32 {
         self.weeks.keys().next_back().copied().unwrap_or(0)
     }
 
-    /// The amounts of a week.
     pub fn week(&self, week: u32) -> Amounts {
         self.weeks.get(&week).copied().unwrap_or([0.0; COUNT])
     }
 
-    /// Mean of the four weeks that end with a week, or of as many as there are.
+    /// Returns the mean of up to four weeks that end with the given week.
     pub fn mean_of_four(&self, week: u32) -> Amounts {
         let from = week.saturating_sub(3).max(1);
         let count = f64::from((week + 1).saturating_sub(from).max(1));
@@ -98,7 +91,6 @@ impl Books {
         mean
     }
 
-    /// The whole run.
     pub fn total(&self) -> Amounts {
         let mut total = [0.0; COUNT];
         for amounts in self.weeks.values() {
@@ -107,12 +99,11 @@ impl Books {
         total
     }
 
-    /// Whether a category was ever booked.
+    /// Returns whether a category has any entry.
     pub fn is_used(&self, category: usize) -> bool {
         self.weeks.values().any(|amounts| amounts[category] != 0.0)
     }
 
-    /// The last weeks.
     pub fn last_weeks(&self, count: usize) -> Vec<(u32, Amounts)> {
         let mut last: Vec<(u32, Amounts)> = self
             .weeks
@@ -131,13 +122,13 @@ fn amounts_of(booked: &Booked) -> Amounts {
     std::array::from_fn(|at| booked.of(CATEGORIES[at].category))
 }
 
-/// Sum of the income, or of the costs.
+/// Returns the sum of the income or of the costs.
 pub fn side(amounts: &Amounts, income: bool) -> f64 {
     let own = amounts.iter().zip(&CATEGORIES).filter(|(_, category)| category.income == income);
     own.map(|(amount, _)| amount).sum()
 }
 
-/// First and last day of a week; the week 0 is the day before the first.
+/// Returns the first and last day of a week; week 0 is the day before the first.
 pub fn days_of(week: u32) -> (u32, u32) {
     match week {
         0 => (0, 0),
@@ -145,7 +136,7 @@ pub fn days_of(week: u32) -> (u32, u32) {
     }
 }
 
-/// Cash at the end of the week before and at the end of a week, or now while it is open.
+/// Returns the cash at the end of the previous week, and at the end of the week (now, if it is open).
 pub fn cash_around(company: &Company, week: u32) -> Option<(f64, f64)> {
     let ended = |week: u32| company.weeks.get(week.checked_sub(1)? as usize).map(|figures| figures.cash);
     let before = match week.checked_sub(1)? {
@@ -155,23 +146,20 @@ pub fn cash_around(company: &Company, week: u32) -> Option<(f64, f64)> {
     Some((before, ended(week).unwrap_or(company.seen.cash)))
 }
 
-/// A step of the way from one week's cash to the next.
+/// A step of the waterfall.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CashStep {
-    /// What moved the cash.
     pub name: String,
-    /// Cash before and after it; a level is a step from itself to itself.
+    /// Cash before the step. For a level, both values are equal.
     pub from: f64,
-    /// Cash after it.
     pub to: f64,
-    /// The cash at the start or at the end.
+    /// Whether it is the initial or final cash.
     pub is_level: bool,
-    /// What is behind it.
     pub subject: Subject,
 }
 
-/// The way from last week's cash to that of a week in at most so many rows: income first, then the costs from the
-/// largest; what finds no room of its own is taken together.
+/// Returns the steps of a week in at most `most` rows: income first, then costs by size; the smallest costs
+/// are combined.
 pub fn waterfall(books: &Books, company: &Company, week: u32, most: usize) -> Vec<CashStep> {
     let Some((before, after)) = cash_around(company, week) else { return Vec::new() };
     let amounts = books.week(week);
@@ -181,8 +169,13 @@ pub fn waterfall(books: &Books, company: &Company, week: u32, most: usize) -> Ve
         let (left, right) = (order(left), order(right));
         left.0.cmp(&right.0).then(left.1.total_cmp(&right.1))
     });
-    let level =
-        |name: String, cash: f64| CashStep { name, from: cash, to: cash, is_level: true, subject: Subject::Net };
+    let level = |name: String, cash: f64| CashStep {
+        name,
+        from: cash,
+        to: cash,
+        is_level: true,
+        subject: Subject::Net,
+    };
     let mut steps = vec![level(format!("day {}", 7 * (week - 1)), before)];
     let mut cash = before;
     let room = most.saturating_sub(2).max(1);
@@ -203,13 +196,13 @@ pub fn waterfall(books: &Books, company: &Company, week: u32, most: usize) -> Ve
     steps
 }
 
-/// Dollars with the sign in front.
+/// Formats dollars with an explicit sign.
 pub fn money(value: f64) -> String {
     let sign = if value <= -0.5 { "-" } else { "" };
     format!("{sign}${}", grouped(value.abs(), 0))
 }
 
-/// The statement behind a category, or a side of the books, from one week to another.
+/// Returns the query for the ledger rows of a subject in a range of weeks.
 pub fn statement(what: &Subject, (first, last): (u32, u32)) -> String {
     let condition = match what {
         Subject::Category(at) => format!("\n    AND category = '{}'", CATEGORIES[*at].category.id()),
@@ -224,21 +217,16 @@ pub fn statement(what: &Subject, (first, last): (u32, u32)) -> String {
     )
 }
 
-/// What a row of the table is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Subject {
-    /// A category.
     Category(usize),
-    /// All income.
     Income,
-    /// All costs.
     Costs,
-    /// What is left.
+    /// Income minus costs.
     Net,
 }
 
 impl Subject {
-    /// Name on screen.
     pub fn name(self) -> &'static str {
         match self {
             Subject::Category(at) => CATEGORIES[at].name(),
@@ -248,7 +236,6 @@ impl Subject {
         }
     }
 
-    /// What explains it.
     pub fn term(self) -> &'static str {
         match self {
             Subject::Category(at) => match CATEGORIES[at].category {
@@ -260,7 +247,7 @@ impl Subject {
         }
     }
 
-    /// The figure of a week that it is.
+    /// Returns the weekly figure that it corresponds to.
     pub fn figure(self) -> Option<WeekFigure> {
         match self {
             Subject::Category(at) => WeekFigure::of_category(CATEGORIES[at].category),
@@ -270,7 +257,6 @@ impl Subject {
         }
     }
 
-    /// Its dollars.
     pub fn of(self, amounts: &Amounts) -> f64 {
         match self {
             Subject::Category(at) => amounts[at],

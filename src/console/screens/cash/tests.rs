@@ -28,7 +28,7 @@ fn the_books_agree_with_the_ledger() {
     assert!(entries > 20);
     let earned: f64 = books.total().iter().sum();
     let change = company.seen.cash - company.seen.starting_cash;
-    assert!((earned - change).abs() < 0.1, "the opening cash is not earned: {earned}, {change}");
+    assert!((earned - change).abs() < 0.1, "the opening cash is not income: {earned}, {change}");
 }
 
 #[test]

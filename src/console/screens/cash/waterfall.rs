@@ -1,13 +1,13 @@
-//! The way from last week's cash to this week's, as bars.
+//! The change from last week's cash to this week's, as bars.
 
 use ratatui::layout::Rect;
 
 use super::model::{CashStep, cash_around, money, waterfall};
 use super::{Cash, Selected, ledger_rows, week_keys};
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{dollars, short_dollars};
 use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
 use novamind_tui::text::arrow;
@@ -15,7 +15,6 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_row;
 use novamind_worker::company::Company;
 
-/// The steps of a week.
 pub struct WaterfallPane;
 
 impl Pane<Cash> for WaterfallPane {
@@ -65,7 +64,8 @@ impl Pane<Cash> for WaterfallPane {
     }
 
     fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
-        // Without the focus all of the way is seen, small steps together; with it every step can be reached.
+        // Without the focus the pane shows the whole waterfall with small steps combined; with it, every step
+        // can be selected.
         let most = if seat.focused { usize::MAX } else { seat.area.height.saturating_sub(1) as usize };
         let steps = waterfall(&cash.books, look.company, cash.week(), most);
         let selected = seat.focused.then(|| cash.step.min(steps.len().saturating_sub(1)));
@@ -73,14 +73,13 @@ impl Pane<Cash> for WaterfallPane {
     }
 }
 
-/// The subject of the selected step.
 fn selected(cash: &Cash, company: &Company) -> Option<Selected> {
     let (steps, week) = (cash.steps(company), cash.week());
     let step = steps.get(cash.step.min(steps.len().saturating_sub(1)))?;
     Some((step.subject, (week, week)))
 }
 
-/// Draws steps, one in a row. The bars begin at the lowest level on the way, or changes would be too small to see.
+/// Draws one step per row. Bars begin at the lowest level, because changes would be too small otherwise.
 fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[CashStep], selected: Option<usize>, pane: usize) {
     if steps.is_empty() {
         canvas.text(area, canvas.no_data, Role::Dim);
@@ -94,13 +93,13 @@ fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[CashStep], selected: Optio
         .flat_map(|step| [step.from, step.to])
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), level| (least.min(level), most.max(level)));
     let floor = if least > 0.0 && least < (most - least) * 0.5 { 0.0 } else { least };
-    // Where bars do not start at nothing, a row says so.
+    // A row states where bars start if that is not zero.
     let told = floor != 0.0 && bars >= 24 && area.height > 1;
     let area = Rect { height: area.height - u16::from(told), ..area };
     let from = first_row(selected.unwrap_or(0), area.height as usize, steps.len());
     let span = (most - floor).max(1e-9);
     let room = f64::from(bars.saturating_sub(2));
-    // A sliver is left for the lowest level, so that it is seen as one.
+    // The lowest level keeps a visible minimum width.
     let place = |level: f64| 1 + ((level - floor) / span * (room - 1.0).max(0.0)).round() as u16;
     for (row, (at, step)) in rows_of(area).zip(steps.iter().enumerate().skip(from)) {
         let here = selected == Some(at);

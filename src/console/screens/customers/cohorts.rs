@@ -1,4 +1,4 @@
-//! How many of those who signed in a week are still there: a triangle of cohorts by weeks since.
+//! Retention by sign-up week: a triangle of cohorts and weeks since sign-up.
 
 use std::collections::BTreeMap;
 
@@ -7,9 +7,9 @@ use ratatui::layout::Rect;
 use super::Customers;
 use super::steps::show_rows;
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, percent};
 use novamind_database::{Rows, number_at, text_at};
 use novamind_session::identifiers::Group;
@@ -18,11 +18,9 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::note_room;
 use novamind_tui::widgets::table::first_row;
 
-/// Width of the names of cohorts with their sizes, and of a cell.
 const NAMES: u16 = 14;
 const CELL: u16 = 5;
 
-/// The triangle.
 pub struct CohortsPane;
 
 impl Pane<Customers> for CohortsPane {
@@ -64,29 +62,26 @@ impl Pane<Customers> for CohortsPane {
     }
 }
 
-/// Those who signed in a week.
+/// Subscribers who signed up in the same week.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Cohort {
-    /// All of them.
     pub size: f64,
-    /// How many left, by week.
     left: BTreeMap<u32, f64>,
 }
 
 impl Cohort {
-    /// Share that is still there at the end of a week.
+    /// Returns the share still subscribed at the end of a week.
     pub fn kept(&self, week: u32) -> f64 {
         let gone: f64 = self.left.range(..=week).map(|(_, left)| left).sum();
         if self.size > 0.0 { 1.0 - gone / self.size } else { 0.0 }
     }
 }
 
-/// Cohorts of all groups, by group and week of signing.
+/// Cohorts by group and sign-up week.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Cohorts(BTreeMap<Group, BTreeMap<u32, Cohort>>);
 
 impl Cohorts {
-    /// From the reading.
     pub fn of(rows: &Rows) -> Cohorts {
         let mut all = Cohorts::default();
         for row in &rows.rows {
@@ -95,14 +90,14 @@ impl Cohorts {
             let cohort = all.0.entry(group).or_default().entry(week).or_default();
             cohort.size += count;
             if left > 0 {
-                // Nobody leaves before they came.
+                // A cancellation cannot precede the sign-up.
                 *cohort.left.entry(left.max(week)).or_default() += count;
             }
         }
         all
     }
 
-    /// Weeks of signing of a group, the newest first.
+    /// Returns the sign-up weeks of a group, newest first.
     fn weeks(&self, group: Group) -> Vec<(u32, &Cohort)> {
         let own = self.0.get(&group).into_iter().flatten();
         let mut weeks: Vec<(u32, &Cohort)> = own.map(|(week, cohort)| (*week, cohort)).collect();
@@ -110,7 +105,7 @@ impl Cohorts {
         weeks
     }
 
-    /// Share of all who signed so many weeks ago or earlier that was kept for so many weeks.
+    /// Returns the mean share kept after `since` weeks, over the cohorts that are at least that old.
     fn mean(&self, group: Group, since: u32, now: u32) -> Option<f64> {
         let old = self.weeks(group).into_iter().filter(|(week, _)| week + since <= now);
         let (kept, size) = old.fold((0.0, 0.0), |(kept, size), (week, cohort)| {
@@ -119,7 +114,7 @@ impl Cohorts {
         (size > 0.0).then(|| kept / size)
     }
 
-    /// The triangle in as many words as have room.
+    /// Summarizes the triangle in at most `room` columns.
     pub fn summary(&self, group: Group, now: u32, room: usize) -> String {
         let mean = |since| self.mean(group, since, now).map(|kept| (since, kept));
         let told: Vec<String> = [4, 8, 12]
@@ -135,17 +130,14 @@ impl Cohorts {
     }
 }
 
-/// Place in the triangle.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct CohortPlace {
-    /// Number of the cohort, the newest being the first.
+    /// Index of the cohort, newest first.
     pub cohort: usize,
-    /// Weeks since.
     pub since: usize,
 }
 
 impl CohortPlace {
-    /// Moves in the triangle of a group.
     pub fn act(&mut self, action: Action, cohorts: &Cohorts, group: Group, now: u32) {
         let weeks = cohorts.weeks(group);
         match action {
@@ -162,27 +154,29 @@ impl CohortPlace {
         self.since = self.since.min(most as usize);
     }
 
-    /// The selected share and its rows: those who are still there at the end of the week.
+    /// Returns the selected share, with a query for the customers who were still subscribed at the end of the
+    /// week.
     pub fn figure(self, cohorts: &Cohorts, group: Group) -> Option<Figure> {
         let (week, cohort) = *cohorts.weeks(group).get(self.cohort)?;
         let until = week + self.since as u32;
         let kept = percent(cohort.kept(until), 1);
         let (first, last) = ((7 * week).saturating_sub(6), 7 * week);
         let sql = format!(
-            "-- {group}: signed in week {week}, still there at the end of week {until}\n\
+            "-- {group}: signed up in week {week}, subscribed at the end of week {until}\n\
              SELECT s.customer_id, s.plan, s.effective_price, s.start_day, s.end_day, s.status\nFROM subscriptions s\n\
              JOIN customers c ON c.customer_id = s.customer_id\nWHERE c.group_id = '{group}'\n    \
              AND s.start_day BETWEEN {first} AND {last}\n    AND s.status IN ('subscribed', 'cancelled')\n    \
              AND (s.status = 'subscribed' OR min(s.end_day, (SELECT max(day) FROM service_day)) > {})",
             7 * until
         );
-        let title =
-            format!("{kept} of the {group} customers of week {week} were there at the end of week {until}");
+        let title = format!(
+            "{kept} of the {group} customers of week {week} were subscribed at the end of week {until}"
+        );
         Some(Figure { title, term: "cohort", sql: Some(sql), why: None })
     }
 }
 
-/// The glyph of a share: the fuller, the more are there.
+/// Returns the glyph of a share; fuller glyphs mean higher retention.
 fn shade(share: f64) -> &'static str {
     match share {
         share if share >= 0.9 => "█",
@@ -193,7 +187,7 @@ fn shade(share: f64) -> &'static str {
     }
 }
 
-/// Draws the triangle; cells are rows of the pane for clicks, a thousand to a cohort.
+/// Draws the triangle. For clicks, the row is a thousand times the cohort index plus the week.
 fn draw(
     canvas: &mut Canvas<'_>,
     area: Rect,
@@ -204,7 +198,7 @@ fn draw(
 ) {
     let weeks = cohorts.weeks(group);
     if weeks.is_empty() {
-        canvas.text(area, "nobody joined in the last sixteen weeks", Role::Dim);
+        canvas.text(area, "No sign-ups in the last 16 weeks", Role::Dim);
         return;
     }
     if area.width < NAMES + CELL || area.height < 3 {
@@ -222,7 +216,7 @@ fn draw(
         let cell = cell_at(head, since);
         canvas.aligned(Rect { width: CELL - 1, ..cell }, &format!("+{since}"), Role::Header, Align::Right);
     }
-    // The last row holds the mean of all cohorts.
+    // The last row shows the mean of all cohorts.
     let room = (area.height - 2) as usize;
     let from = first_row(place.map_or(0, |place| place.cohort), room, weeks.len());
     let shown = weeks.iter().enumerate().skip(from).take(room);
@@ -284,7 +278,7 @@ mod tests {
         assert_eq!(weeks.iter().map(|(week, _)| *week).collect::<Vec<_>>(), [4, 3]);
         let old = weeks[1].1;
         assert_eq!([3, 4, 5, 6, 7, 90].map(|week| old.kept(week)), [1.0, 1.0, 0.7, 0.7, 0.5, 0.5]);
-        assert_eq!(cohorts.mean(group, 4, 7), Some(0.5), "only those who could be there that long count");
+        assert_eq!(cohorts.mean(group, 4, 7), Some(0.5), "only cohorts that are old enough count");
         assert_eq!(cohorts.mean(group, 2, 7), Some(0.85));
         assert_eq!(cohorts.mean(group, 9, 7), None);
         let mut place = CohortPlace::default();

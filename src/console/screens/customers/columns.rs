@@ -1,19 +1,18 @@
-//! The table of the groups: its columns, and the rows behind every figure in it.
+//! Columns of the table of groups, and the rows behind each figure.
 
 use super::hidden::TrueValue;
 use super::model::{CustomerFacts, MarketRows, ad_budgets, development_budget};
 use crate::context::Figure;
 use crate::screens::market::model::{level_of, name_of};
 use novamind_base::notation::{cents, compact, dollars, grouped, percent};
-use novamind_session::identifiers::Group;
-use novamind_record::figures::WeekFigure;
-use novamind_session::truth_behind;
 use novamind_insight::WeekQuantity;
+use novamind_record::figures::WeekFigure;
+use novamind_session::identifiers::Group;
+use novamind_session::truth_behind;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell, Column, spark};
 use novamind_worker::company::Company;
 
-/// What a column is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum What {
     Group,
@@ -38,7 +37,7 @@ enum What {
     Name,
 }
 
-/// Columns with their heads and what explains them, in the order of what is looked at first.
+/// Columns with headings and glossary terms, most used first.
 static COLUMNS: [(What, &str, &str); 23] = [
     (What::Group, "group", "customer-group"),
     (What::Segment, "kind", "customer-group"),
@@ -65,13 +64,12 @@ static COLUMNS: [(What, &str, &str); 23] = [
     (What::Name, "name", "customer-group"),
 ];
 
-/// Columns that are shown: those of true values only where they are.
+/// Returns the visible columns; those with true values need an open x-ray.
 fn shown(company: &Company) -> impl Iterator<Item = &'static (What, &'static str, &'static str)> {
     let has_hidden = company.hidden.is_some();
     COLUMNS.iter().filter(move |(what, ..)| has_hidden || !matches!(what, What::True(_)))
 }
 
-/// Columns of the table.
 pub fn columns(company: &Company) -> Vec<Column> {
     let column = |(what, head, _): &(What, &str, &str)| match what {
         What::Group | What::Segment | What::Trend => Column::words(*head),
@@ -81,7 +79,8 @@ pub fn columns(company: &Company) -> Vec<Column> {
     shown(company).map(column).collect()
 }
 
-/// Share of the market, least and most by its study: customers of the individual and companies of the others.
+/// Returns the lowest and highest market share by the group's market study: individuals for individual
+/// groups, enterprises otherwise.
 fn of_market(group: Group, facts: &CustomerFacts, company: &Company) -> Option<(f64, f64)> {
     let (market, noise) = (company.insights.get(&group)?.estimates.market_cap, company.fit(group)?.noise);
     let (least, most) = truth_behind(market as f64, noise);
@@ -89,7 +88,6 @@ fn of_market(group: Group, facts: &CustomerFacts, company: &Company) -> Option<(
     (market > 0).then(|| (customers / most, customers / least))
 }
 
-/// The row of a group.
 pub fn row_of(group: Group, facts: &CustomerFacts, company: &Company, market: &MarketRows) -> Vec<Cell> {
     shown(company).map(|(what, ..)| cell_of(*what, group, facts, company, market)).collect()
 }
@@ -132,7 +130,7 @@ fn cell_of(what: What, group: Group, facts: &CustomerFacts, company: &Company, m
         },
         What::Leads => count(flow.leads),
         What::New => new_cell(facts, week),
-        // Companies sign weeks after they came: a share of this week's leads would mean nothing.
+        // Enterprises sign weeks after they arrive, so a conversion of this week's leads is meaningless.
         What::Conversion => {
             let converted = (flow.leads > 0.0 && !large).then(|| flow.signed / flow.leads);
             optional(converted, &|share| percent(share, 1))
@@ -172,13 +170,13 @@ fn new_cell(facts: &CustomerFacts, week: u32) -> Cell {
     Cell::number(now, format!("{glyph}{}", grouped(now, 0))).role(role)
 }
 
-/// The figure of a group in a column, and the rows behind it.
+/// Returns the figure of a group in a column, with a query for its rows.
 pub fn figure(group: Group, column: usize, company: &Company) -> Option<Figure> {
     let (what, head, term) = *shown(company).nth(column)?;
     let week = company.seen.week;
     let name = match what {
         What::Group | What::Segment | What::Name => "customers",
-        What::Customers if group.is_enterprise() => "companies",
+        What::Customers if group.is_enterprise() => "enterprises",
         What::Customers => "subscribers",
         What::New | What::Trend => "new customers",
         What::Left => "cancellations",
@@ -196,7 +194,7 @@ pub fn figure(group: Group, column: usize, company: &Company) -> Option<Figure> 
     Some(figure.of_week(quantity(what, group), week))
 }
 
-/// The figure of a week that a column shows of a group; that of a row is the customers.
+/// Returns the weekly figure that a column shows for a group; for the name columns, the number of customers.
 fn quantity(what: What, group: Group) -> Option<WeekQuantity> {
     let figure = match what {
         What::Group | What::Segment | What::Name | What::Customers => WeekFigure::Subscribers,
@@ -211,7 +209,7 @@ fn quantity(what: What, group: Group) -> Option<WeekQuantity> {
     WeekQuantity::of_group(figure, group)
 }
 
-/// Customers with their subscriptions, under a condition.
+/// Selects customers with their subscriptions by a condition.
 fn customers(group: Group, condition: &str) -> String {
     format!(
         "SELECT c.customer_id, c.acquisition_source, c.created_day, s.plan, s.status, s.seat_count, s.effective_price,\n    \
@@ -220,7 +218,7 @@ fn customers(group: Group, condition: &str) -> String {
     )
 }
 
-/// Those who signed in days: individuals on the day they came, companies on the day of their deal.
+/// Selects sign-ups in a range of days: individuals by arrival, enterprises by the day of their deal.
 fn signed(group: Group, (from, to): (u32, u32)) -> String {
     let day = if group.is_enterprise() { "s.start_day" } else { "c.created_day" };
     customers(
@@ -229,7 +227,7 @@ fn signed(group: Group, (from, to): (u32, u32)) -> String {
     )
 }
 
-/// The rows of the leads, new customers or cancellations of a week.
+/// Selects the leads, new customers or cancellations of a week.
 pub fn flow_statement(flow: usize, group: Group, week: u32) -> String {
     let days = ((7 * week).saturating_sub(6), 7 * week);
     match flow {
@@ -283,7 +281,6 @@ fn statement(what: What, group: Group, week: u32, day: u32) -> Option<String> {
     })
 }
 
-/// The figure of a group in the column of a name.
 pub fn figure_named(head: &str, group: Group, company: &Company) -> Option<Figure> {
     let column = shown(company).position(|(_, own, _)| *own == head)?;
     figure(group, column, company)

@@ -1,12 +1,13 @@
-//! What a lead and a first bill cost by channel and group: the last four weeks beside the cheapest before them.
+//! Cost of a lead and of a first bill by channel and group: the last four weeks next to the cheapest earlier
+//! four weeks.
 
 use ratatui::layout::Rect;
 
 use super::Customers;
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{cents, dollars, grouped};
 use novamind_report::lead_costs::{AdSpell, PairCost};
 use novamind_session::identifiers::{Channel, Group};
@@ -16,7 +17,7 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell, Column, Table};
 use novamind_worker::company::Company;
 
-/// The pairs of channel and group that are paid for.
+/// Pairs of channel and group with advertising.
 pub struct CostsPane;
 
 impl Pane<Customers> for CostsPane {
@@ -58,7 +59,7 @@ impl Pane<Customers> for CostsPane {
 
     fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {
         if customers.costs.rows().is_empty() {
-            canvas.text(seat.area, "no ads in the last 4 weeks", Role::Dim);
+            canvas.text(seat.area, "No ads in the last 4 weeks", Role::Dim);
             return;
         }
         customers.costs.draw(canvas, seat.area, seat.focused, seat.number);
@@ -69,14 +70,14 @@ fn selected<'a>(customers: &Customers, company: &'a Company) -> Option<&'a PairC
     company.lead_costs.get(customers.costs.selected()?)
 }
 
-/// The columns.
+/// Returns the columns of the table.
 pub fn columns() -> Vec<Column> {
     let words = ["channel", "group"].map(Column::words);
     let numbers = ["leads", "spend", "$/lead", "was", "$/first bill", "was"].map(Column::numbers);
     words.into_iter().chain(numbers).collect()
 }
 
-/// The row of a pair.
+/// Returns the row of a pair.
 pub fn row_of(pair: &PairCost) -> Vec<Cell> {
     let each = |value: Option<f64>| match value {
         Some(value) => Cell::number(value, cents(value)),
@@ -96,7 +97,7 @@ pub fn row_of(pair: &PairCost) -> Vec<Cell> {
     ]
 }
 
-/// Leads, spend and first bills of a pair by week.
+/// Selects leads, spend and first bills of a pair by week.
 pub fn statement(channel: Channel, group: Group) -> String {
     let channel = channel.id();
     format!(

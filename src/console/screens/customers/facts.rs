@@ -1,4 +1,4 @@
-//! What is known of a group, line by line: plans, sources, money. Every line with a figure can be selected.
+//! Known facts about a group: plans, sources, money. Every line with a figure can be selected.
 
 use ratatui::layout::Rect;
 
@@ -6,10 +6,10 @@ use super::Customers;
 use super::model::{CustomerFacts, MarketRows, ad_budgets, development_budget};
 use super::steps::show_rows;
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::market::model::name_of;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{cents, compact, dollars, grouped, percent};
 use novamind_session::identifiers::{Group, Plan};
 use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
@@ -18,7 +18,6 @@ use novamind_tui::widgets::spark::bar;
 use novamind_tui::widgets::table::first_row;
 use novamind_worker::company::Company;
 
-/// What is known of a group.
 pub struct FactsPane;
 
 impl FactsPane {
@@ -38,7 +37,7 @@ impl Pane<Customers> for FactsPane {
         self.lines(customers, look, 0).into_iter().nth(customers.opened.fact)?.figure
     }
 
-    /// Moves to the next line that holds a figure.
+    /// Moves to the next line with a figure.
     fn act(&self, customers: &mut Customers, action: Action, look: &Look<'_>) -> Vec<Effect> {
         if action == Action::Open {
             return show_rows(self.figure(customers, look));
@@ -89,15 +88,11 @@ impl Pane<Customers> for FactsPane {
     }
 }
 
-/// A line.
 struct Fact {
-    /// Words at the left.
     words: String,
-    /// Figures at the right.
     figures: String,
-    /// Meaning.
     role: Role,
-    /// The figure it shows; none for a head.
+    /// The figure on the line; `None` for a heading.
     figure: Option<Figure>,
 }
 
@@ -109,9 +104,15 @@ fn fact(words: String, figures: String, title: String, term: &'static str, sql: 
     Fact { words, figures, role: Role::Text, figure: Some(Figure { title, term, sql, why: None }) }
 }
 
-/// The lines of a group; bars have so many cells.
-fn facts(company: &Company, market: &MarketRows, facts: &CustomerFacts, group: Group, bars: usize) -> Vec<Fact> {
-    // A small window has room for the parts that change most; money comes last.
+/// Returns the lines of a group; bars are `bars` cells wide.
+fn facts(
+    company: &Company,
+    market: &MarketRows,
+    facts: &CustomerFacts,
+    group: Group,
+    bars: usize,
+) -> Vec<Fact> {
+    // Money comes last: small windows cut the end, and it changes least.
     let mut lines = companies(company, group);
     lines.extend(plans(facts, group, bars));
     lines.extend(sources(company, facts, group));
@@ -119,7 +120,7 @@ fn facts(company: &Company, market: &MarketRows, facts: &CustomerFacts, group: G
     lines
 }
 
-/// The way of companies to a deal.
+/// Returns the funnel of enterprises from lead to deal.
 fn companies(company: &Company, group: Group) -> Vec<Fact> {
     let Some(funnel) = company.funnels.iter().find(|funnel| funnel.group == group) else { return Vec::new() };
     let asked = "SELECT DISTINCT c.customer_id, c.created_day, t.day AS asked_day, t.seat_count\nFROM customers c\n\
@@ -129,7 +130,7 @@ fn companies(company: &Company, group: Group) -> Vec<Fact> {
          'large'\nORDER BY customer_id DESC"
     );
     let of_group = format!("\nWHERE c.group_id = '{group}'");
-    let mut lines = vec![head("companies, whole run", String::new())];
+    let mut lines = vec![head("enterprises, whole run", String::new())];
     for (name, count, sql) in [
         ("came", funnel.came, came.clone()),
         ("no plan good enough", funnel.turned_away(), came),
@@ -144,7 +145,7 @@ fn companies(company: &Company, group: Group) -> Vec<Fact> {
             ),
         ),
     ] {
-        let title = format!("companies of {group}: {name}");
+        let title = format!("enterprises of {group}: {name}");
         lines.push(fact(format!("  {name}"), grouped(f64::from(count), 0), title, "lead", Some(sql)));
     }
     lines
@@ -184,7 +185,8 @@ fn sources(company: &Company, facts: &CustomerFacts, group: Group) -> Vec<Fact> 
              AND c.acquisition_source = '{source}' AND c.created_day > {}",
             i64::from(company.seen.day) - 84
         );
-        let title = format!("leads of {group} from {source} in twelve weeks");
+        let source = if source == "network" { "word of mouth" } else { source };
+        let title = format!("leads of {group} from {source} in 12 weeks");
         lines.push(fact(format!("  {source}"), figures, title, "acquisition-source", Some(sql)));
     }
     lines
@@ -210,14 +212,19 @@ fn money(company: &Company, market: &MarketRows, facts: &CustomerFacts, group: G
     let rows = |figure: &Option<Figure>| figure.as_ref().and_then(|figure| figure.sql.clone());
     for (name, value, term, sql) in [
         ("revenue a month", dollars(facts.sum(|held| held.monthly)), "mrr", rows(&revenue)),
-        ("per seat", or_none(facts.revenue_per_seat(), cents), "arpu", rows(&revenue)),
-        ("left in 30 days", or_none(facts.churn(), |share| percent(share, 1)), "churn", rows(&churn)),
-        ("ads a day", dollars(ad_budgets(company, group)), "set_targeted_ad_spend", None),
-        ("ads of 28 days", dollars(market.ad_spend(group)), "ad_channel_leads.spend", Some(spend)),
-        ("development a day", dollars(development_budget(company, group)), "set_targeted_dev_spend", None),
+        (
+            if group.is_enterprise() { "per seat" } else { "per subscriber" },
+            or_none(facts.revenue_per_seat(), cents),
+            "arpu",
+            rows(&revenue),
+        ),
+        ("30-day churn", or_none(facts.churn(), |share| percent(share, 1)), "churn", rows(&churn)),
+        ("ads per day", dollars(ad_budgets(company, group)), "set_targeted_ad_spend", None),
+        ("ads, 28 days", dollars(market.ad_spend(group)), "ad_channel_leads.spend", Some(spend)),
+        ("development per day", dollars(development_budget(company, group)), "set_targeted_dev_spend", None),
     ] {
         lines.push(fact(format!("  {name}"), value, format!("{name} of {group}"), term, sql));
-        // The share that left is the figure of its column.
+        // Uses the query of the churn column.
         if let Some(Fact { figure: Some(figure), .. }) = lines.last_mut().filter(|_| term == "churn") {
             figure.why = explained;
         }

@@ -1,27 +1,25 @@
-//! Fit: what the open group wants beside what each plan offers, its leads, and what is missing.
+//! Fit of the open group: estimated requirements next to each plan, leads, and what is missing.
 
 use ratatui::layout::Rect;
 
 use super::Customers;
 use super::steps::{moved, show_rows};
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, percent, price_to_cents};
+use novamind_insight::WeekQuantity;
+use novamind_record::figures::WeekFigure;
 use novamind_report::fit::{Beside, Concern, Fit, TruthRange};
 use novamind_session::identifiers::Plan;
-use novamind_record::figures::WeekFigure;
-use novamind_insight::WeekQuantity;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::text::{number, wrapped};
 use novamind_tui::theme::Role;
 
-/// Words left of the lines of each part.
 const NAMES: usize = 8;
 
-/// What a group wants, and what it is offered.
 pub struct FitPane;
 
 impl Pane<Customers> for FitPane {
@@ -37,8 +35,9 @@ impl Pane<Customers> for FitPane {
              ON s.customer_id = c.customer_id\nWHERE c.group_id = '{group}'\nGROUP BY 1, 2\nORDER BY 1 DESC, 2"
         );
         let title = format!("fit of {group} and its leads by week");
-        // Companies sign weeks after they came.
-        let quantity = WeekQuantity::of_group(WeekFigure::Conversion, group).filter(|_| !group.is_enterprise());
+        // Enterprises sign weeks after they arrive.
+        let quantity =
+            WeekQuantity::of_group(WeekFigure::Conversion, group).filter(|_| !group.is_enterprise());
         let figure = Figure { title, term: "fit", sql: Some(sql), why: None };
         Some(figure.of_week(quantity, look.company.seen.week))
     }
@@ -55,7 +54,7 @@ impl Pane<Customers> for FitPane {
         let fit = customers.group(look.company).and_then(|group| look.company.fit(group));
         fit.map_or_else(Border::default, |fit| Border {
             title: format!("Fit of {}", fit.group),
-            note: format!("level {} · {}", fit.level, fit.studied()),
+            note: format!("study level {} · {}", fit.level, fit.studied()),
             ..Border::default()
         })
     }
@@ -73,7 +72,6 @@ impl Pane<Customers> for FitPane {
     }
 }
 
-/// A line of the pane.
 struct FitLine {
     text: String,
     role: Role,
@@ -83,10 +81,10 @@ fn line(text: String, role: Role) -> FitLine {
     FitLine { text, role }
 }
 
-/// All of it, in lines of a width.
+/// Returns all lines of the pane, at most `width` columns wide.
 fn lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine> {
     let company = fit.group.is_enterprise();
-    let mut lines = vec![line(format!("quality  they want {}", fit.floor.quality()), Role::Header)];
+    let mut lines = vec![line(format!("quality  required {}", fit.floor.quality()), Role::Header)];
     let qualities = Plan::ALL.map(|plan| fit.plans[plan].quality);
     lines.extend(Plan::ALL.map(|plan| {
         let name = format!("T{}", tier(plan));
@@ -94,15 +92,21 @@ fn lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine>
         bar_line(fit, (plan, Concern::Quality), (&name, &shown), (fit.floor, &qualities), width)
     }));
     let per = if company { " a seat" } else { "" };
-    lines.push(line(format!("price    they pay {}{per}", fit.budget.money()), Role::Header));
+    lines.push(line(format!("price    budget {}{per}", fit.budget.money()), Role::Header));
     let prices = Plan::ALL.map(|plan| fit.plans[plan].price);
     lines.extend(Plan::ALL.map(|plan| {
         let own = &fit.plans[plan];
         let name = if own.price < own.list { "lead" } else { "list" };
-        bar_line(fit, (plan, Concern::Price), (name, &price_to_cents(own.price)), (fit.budget, &prices), width)
+        bar_line(
+            fit,
+            (plan, Concern::Price),
+            (name, &price_to_cents(own.price)),
+            (fit.budget, &prices),
+            width,
+        )
     }));
     let smallest = if company { " (smallest)" } else { "" };
-    lines.push(line(format!("quota    they use {}{smallest}", fit.usage.units()), Role::Header));
+    lines.push(line(format!("quota    typical use {} a day{smallest}", fit.usage.units()), Role::Header));
     let quotas = Plan::ALL.map(|plan| format!("{plan} {}", compact(fit.plans[plan].quota)));
     lines.push(line(format!(" {} a day", quotas.join(" · ")), worst(fit, Concern::Quota)));
     let mut told = |name: &str, text: &str, role: Role| {
@@ -116,7 +120,7 @@ fn lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine>
             told("leads", &format!("last week: {}", week.in_words()), Role::Text);
             told("", &format!("last 4 weeks: {}", fit.recent.in_words()), Role::Text);
         }
-        None => told("leads", "no week has run", Role::Dim),
+        None => told("leads", "no week has been simulated", Role::Dim),
     }
     for plan in Plan::ALL {
         let name = if plan == Plan::A { "missing" } else { "" };
@@ -126,11 +130,11 @@ fn lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine>
         };
         told(name, &format!("{plan} {}", fit.lacks(plan)), role);
     }
-    told("", "█ reached · ▓ reached, inside the range · ▒ rest of the range", Role::Dim);
+    told("", "█ reached · ▓ reached, in the range · ▒ rest of the range", Role::Dim);
     told(
         "",
         &format!(
-            "Ranges are those of the group's means (±{}); the quality a customer requires rises with the price.",
+            "Ranges are for the group's means (±{}). Customers require more quality at a higher price.",
             percent(fit.noise, 0)
         ),
         Role::Dim,
@@ -138,7 +142,7 @@ fn lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine>
     lines
 }
 
-/// The role of a concern that all plans share a line for.
+/// Returns the role of a line that all plans share.
 fn worst(fit: &Fit, concern: Concern) -> Role {
     match Plan::ALL.iter().any(|plan| fit.missing(*plan, concern).is_some()) {
         true => Role::Bad,
@@ -146,7 +150,7 @@ fn worst(fit: &Fit, concern: Concern) -> Role {
     }
 }
 
-/// A plan beside a range: `A T1 ███▒▒▒▒  0.1200 short 0.0610`.
+/// Returns a plan next to a range: `A T1 ███▒▒▒▒  0.1200 short 0.0610`.
 fn bar_line(
     fit: &Fit,
     (plan, concern): (Plan, Concern),
@@ -166,7 +170,7 @@ fn bar_line(
     line(format!(" {plan} {name:<4} {bar} {shown:>9} {verdict}"), role)
 }
 
-/// Cells up to a figure, and behind them what of the range it does not reach.
+/// Returns a bar up to a figure, followed by the part of the range above it.
 fn bar_of(figure: f64, range: TruthRange, most: f64, cells: usize) -> String {
     let per_cell = if most > 0.0 { most / cells as f64 } else { 1.0 };
     let cell = |at: usize| {
@@ -181,7 +185,7 @@ fn bar_of(figure: f64, range: TruthRange, most: f64, cells: usize) -> String {
     (0..cells).map(cell).collect()
 }
 
-/// How a plan stands in a concern, in a word and a role.
+/// Compares a plan with a requirement, as text and role.
 fn verdict(fit: &Fit, plan: Plan, concern: Concern) -> (String, Role) {
     if fit.plans[plan].list <= 0.0 {
         return ("no price".to_owned(), Role::Dim);
@@ -194,8 +198,8 @@ fn verdict(fit: &Fit, plan: Plan, concern: Concern) -> (String, Role) {
     }
     match fit.beside(plan, concern) {
         None => ("negotiated".to_owned(), Role::Dim),
-        Some(Beside::Inside) => ("inside".to_owned(), Role::Text),
-        Some(_) if concern == Concern::Price => ("within budget".to_owned(), Role::Good),
+        Some(Beside::Inside) => ("in range".to_owned(), Role::Text),
+        Some(_) if concern == Concern::Price => ("below budget".to_owned(), Role::Good),
         Some(_) => ("enough".to_owned(), Role::Good),
     }
 }

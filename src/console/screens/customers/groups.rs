@@ -1,18 +1,17 @@
-//! Every known group in a row.
+//! Table of all known groups.
 
 use ratatui::layout::Rect;
 
 use super::opened::Opened;
 use super::{Customers, columns};
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::text::count;
 use novamind_tui::widgets::Table;
 
-/// The table of the groups.
 pub struct CustomerGroupsPane;
 
 impl Pane<Customers> for CustomerGroupsPane {

@@ -1,13 +1,13 @@
-//! Leads of a thousand dollars by channel and group: a number and a shade.
+//! Leads per $1,000 by channel and group, as numbers with shading.
 
 use ratatui::layout::Rect;
 
 use super::Customers;
 use super::model::{MarketRows, ad_budget};
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{dollars, grouped};
 use novamind_report::measures::ENOUGH_LEADS;
 use novamind_session::identifiers::Channel;
@@ -18,7 +18,6 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_row;
 use novamind_worker::company::Company;
 
-/// The map.
 pub struct ChannelsPane;
 
 impl Pane<Customers> for ChannelsPane {
@@ -60,17 +59,14 @@ impl Pane<Customers> for ChannelsPane {
     }
 }
 
-/// Place on the map.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct HeatPlace {
-    /// Number of the channel.
     pub channel: usize,
-    /// Number of the group among the known ones.
+    /// Index of the group among the known ones.
     pub group: usize,
 }
 
 impl HeatPlace {
-    /// Moves on a map of so many groups.
     fn act(&mut self, action: Action, groups: usize) {
         let (last_channel, last_group) = (Channel::ALL.len() - 1, groups.saturating_sub(1));
         match action {
@@ -85,12 +81,12 @@ impl HeatPlace {
     }
 }
 
-/// Rows that the map wants inside its pane.
+/// Rows that the map needs inside its border.
 pub const HEIGHT: u16 = Channel::ALL.len() as u16 + 2;
 const NAMES: u16 = 18;
 const CELL: u16 = 9;
 
-/// Draws the map. The shade compares channels within a group: groups differ too much among each other.
+/// Draws the map. The shade compares channels within a group because groups differ too much.
 fn draw(
     canvas: &mut Canvas<'_>,
     area: Rect,
@@ -153,7 +149,7 @@ fn draw_cell(canvas: &mut Canvas<'_>, cell: Rect, value: Option<f64>, best: f64,
     };
     let share = if best > 0.0 { value / best } else { 0.0 };
     let (glyph, role) = match share {
-        // Too few leads for a comparison.
+        // Too few leads to compare.
         share if share > 1.0 || best == 0.0 => (" ", Role::Dim),
         share if share >= 0.999 => ("█", Role::Good),
         share if share >= 0.5 => ("▓", Role::Text),
@@ -167,7 +163,7 @@ fn draw_cell(canvas: &mut Canvas<'_>, cell: Rect, value: Option<f64>, best: f64,
     canvas.text(Rect { x: cell.x + CELL - 1, width: 1, ..cell }, glyph, role);
 }
 
-/// The selected figure and its rows.
+/// Returns the selected figure, with a query for its rows.
 fn figure(company: &Company, place: HeatPlace) -> Option<Figure> {
     let (channel, group) = (Channel::ALL.get(place.channel)?, company.seen.known_groups.get(place.group)?);
     let sql = format!(
@@ -180,7 +176,6 @@ fn figure(company: &Company, place: HeatPlace) -> Option<Figure> {
     Some(Figure { title, term: "cost-per-lead", sql: Some(sql), why: None })
 }
 
-/// The selected pair in words.
 fn words(company: &Company, market: &MarketRows, place: HeatPlace) -> String {
     let (Some(channel), Some(group)) =
         (Channel::ALL.get(place.channel), company.seen.known_groups.get(place.group))

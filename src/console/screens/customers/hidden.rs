@@ -1,37 +1,31 @@
-//! True values of groups in the table, where they are shown.
+//! True values of groups in the table, if the x-ray is open.
 
-use novamind_worker::company::Company;
 use novamind_base::notation::grouped;
 use novamind_insight::TrueGroup;
 use novamind_session::identifiers::Group;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Cell;
+use novamind_worker::company::Company;
 
-/// A true value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TrueValue {
-    /// Mean satisfaction of the subscribers.
     Satisfaction,
-    /// Reputation.
     Reputation,
-    /// Leads that were expected on the day.
     Leads,
-    /// What the market holds.
     Market,
 }
 
 impl TrueValue {
-    /// What it is of a group: `true satisfaction`.
+    /// Returns the name in titles, such as `true satisfaction`.
     pub fn title(self) -> &'static str {
         match self {
             TrueValue::Satisfaction => "true satisfaction",
             TrueValue::Reputation => "true reputation",
-            TrueValue::Leads => "truly expected leads",
-            TrueValue::Market => "true size of the market",
+            TrueValue::Leads => "true expected leads",
+            TrueValue::Market => "true market cap",
         }
     }
 
-    /// The cell of a group.
     pub fn cell(self, group: Group, company: &Company) -> Cell {
         let value = company.hidden.as_ref().and_then(|hidden| self.of(&hidden.groups[group]));
         let cell = match value {
@@ -45,9 +39,7 @@ impl TrueValue {
         match self {
             TrueValue::Satisfaction => own.satisfaction.map(|value| (value, grouped(value, 3))),
             TrueValue::Reputation => Some((own.reputation, grouped(own.reputation, 3))),
-            TrueValue::Leads => {
-                own.is_known.then(|| (own.expected_leads, grouped(own.expected_leads, 1)))
-            }
+            TrueValue::Leads => own.is_known.then(|| (own.expected_leads, grouped(own.expected_leads, 1))),
             TrueValue::Market => Some(match own.market_cap {
                 cap if cap > 0.0 => (cap, grouped(cap, 0)),
                 _ => (f64::INFINITY, "no limit".to_owned()),

@@ -1,4 +1,4 @@
-//! The customer groups: a table, what advertising brings, and each group opened.
+//! Customer groups: a table, advertising results, and a detail view of each group.
 
 mod cohorts;
 mod columns;
@@ -24,10 +24,10 @@ use self::cohorts::Cohorts;
 use self::columns::{columns, row_of};
 use self::model::MarketRows;
 use self::opened::Opened;
-use super::panes::{Pane, Paned, draw_pane};
-use crate::context::Look;
 use super::ScreenState;
+use super::panes::{Pane, Paned, draw_pane};
 use crate::action::Action;
+use crate::context::Look;
 use crate::effect::Effect;
 use novamind_database::Rows;
 use novamind_session::identifiers::Group;
@@ -36,33 +36,33 @@ use novamind_tui::widgets::Table;
 use novamind_worker::company::Company;
 use novamind_worker::readings::Reading;
 
-/// Its panes.
+/// Panes of the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CustomersPane {
-    /// Every known group in a row.
+    /// Table of the known groups.
     #[default]
     Groups,
-    /// Leads of a thousand dollars by channel.
+    /// Leads per $1,000 by channel.
     Channels,
-    /// What leads and first bills cost by channel and group.
+    /// Cost of leads and first bills by channel and group.
     Costs,
-    /// Where the open group leads.
+    /// Links from the open group to tools, its study and its customers.
     Ways,
-    /// What it wants beside what it is offered.
+    /// Estimated requirements next to the plans.
     Fit,
-    /// The same over time: quality and floor.
+    /// Delivered and required quality by week.
     Quality,
-    /// What is known of it.
+    /// Facts about the group.
     Facts,
     /// Its weeks.
     Weeks,
-    /// Who stayed.
+    /// Retention by cohort.
     Cohorts,
-    /// What its study says.
+    /// Estimates of its market study.
     Study,
 }
 
-/// The panes while no group is open, and those of the open one.
+/// Panes without an open group, then panes of an open group.
 const LISTED: [CustomersPane; 3] = [CustomersPane::Groups, CustomersPane::Channels, CustomersPane::Costs];
 const OPENED: [CustomersPane; 7] = [
     CustomersPane::Ways,
@@ -74,23 +74,23 @@ const OPENED: [CustomersPane; 7] = [
     CustomersPane::Study,
 ];
 
-/// The screen.
+/// The customers screen.
 #[derive(Default)]
 pub struct Customers {
-    /// The pane that has the focus while no group is open.
+    /// Focused pane while no group is open.
     focus: CustomersPane,
     market: MarketRows,
     table: Table,
     costs: Table,
     place: heat::HeatPlace,
     cohorts: Cohorts,
-    /// The group that is open, by its number among the known ones.
+    /// Index of the open group among the known ones.
     open: Option<usize>,
     opened: Opened,
 }
 
 impl Customers {
-    /// Opens a group, if it is known.
+    /// Opens a group if it is known.
     pub fn show(&mut self, group: Group, company: &Company) {
         self.focus = CustomersPane::Groups;
         self.open = company.seen.known_groups.iter().position(|own| *own == group);
@@ -98,12 +98,11 @@ impl Customers {
         self.select_open();
     }
 
-    /// The group that is open, or selected in the list.
+    /// Returns the open group, or the group selected in the list.
     fn group(&self, company: &Company) -> Option<Group> {
         company.seen.known_groups.get(self.open.or(self.table.selected())?).copied()
     }
 
-    /// Opens another group instead of the open one.
     fn turn_to(&mut self, other: impl Fn(usize) -> usize, company: &Company) {
         let last = company.seen.known_groups.len().saturating_sub(1);
         self.open = self.open.map(|open| other(open).min(last));
@@ -221,13 +220,13 @@ impl Paned for Customers {
         let map = (heat::HEIGHT + 2).min(area.height / 2);
         let list = (look.company.seen.known_groups.len() as u16 + 3).min(area.height - map);
         let rest = area.height - map - list;
-        // What room is left shows the selected group; without it the list takes it all.
+        // A preview of the selected group takes the remaining rows if it fits.
         let (list, rest) = if rest >= 14 { (list, rest) } else { (list + rest, 0) };
         let [table, channels, preview] =
             Layout::vertical([Constraint::Length(list), Constraint::Length(map), Constraint::Length(rest)])
                 .areas(area);
         draw_pane(self, CustomersPane::Groups, canvas, table, look);
-        // Two halves where both fit; otherwise the one that has the focus.
+        // Both halves if they fit, otherwise the focused one.
         if channels.width >= 150 {
             let halves = [Constraint::Percentage(50), Constraint::Min(0)];
             let [left, right] = Layout::horizontal(halves).areas(channels);

@@ -1,83 +1,72 @@
-//! What is known of the customer groups, put together from the readings.
+//! Customer figures collected from the readings.
 
 use std::collections::BTreeMap;
 
 use serde_json::Value;
 
+use novamind_database::{Rows, number_at, text_at};
+use novamind_session::identifiers::{Channel, Group, Plan};
+use novamind_tools::ToolId;
 use novamind_worker::company::Company;
 use novamind_worker::readings::Reading;
-use novamind_database::{Rows, number_at, text_at};
-use novamind_tools::ToolId;
-use novamind_session::identifiers::{Channel, Group, Plan};
 
-/// Weeks that the curves show.
 pub const WEEKS: u32 = 12;
 
-/// What a plan has of a group.
+/// Subscriptions of a group to a plan.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Held {
-    /// Subscriptions.
     pub customers: f64,
-    /// Their seats.
     pub seats: f64,
     /// Dollars a month.
     pub monthly: f64,
-    /// Units of the last day.
+    /// Units used on the last day.
     pub units: f64,
-    /// Seats that used them.
+    /// Seats whose usage is counted in `units`.
     pub users: f64,
-    /// Subscriptions that were there 30 days ago.
+    /// Subscriptions that were active 30 days ago.
     pub since_30_days: f64,
 }
 
-/// A week of a group.
+/// Changes in one week of a group.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Flow {
-    /// Leads.
     pub leads: f64,
-    /// Those who signed.
     pub signed: f64,
-    /// Those who left.
     pub cancelled: f64,
 }
 
-/// A group.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct CustomerFacts {
-    /// By plan.
     pub plans: [Held; 3],
-    /// By week.
     pub weeks: BTreeMap<u32, Flow>,
-    /// Leads and signed customers of the last weeks by source.
+    /// Leads and sign-ups of the last weeks by acquisition source.
     pub sources: BTreeMap<String, (f64, f64)>,
-    /// Customers there 30 days ago who have left since.
+    /// Subscriptions active 30 days ago that have ended since.
     pub lost_in_30_days: f64,
 }
 
 impl CustomerFacts {
-    /// A sum over the plans.
     pub fn sum(&self, figure: impl Fn(&Held) -> f64) -> f64 {
         self.plans.iter().map(figure).sum()
     }
 
-    /// The flow of a week.
     pub fn week(&self, week: u32) -> Flow {
         self.weeks.get(&week).copied().unwrap_or_default()
     }
 
-    /// A sum over the last weeks.
+    /// Returns the sum over the last `count` weeks.
     pub fn last(&self, week: u32, count: u32, figure: impl Fn(&Flow) -> f64) -> f64 {
         let from = (week + 1).saturating_sub(count);
         self.weeks.range(from..=week.max(from)).map(|(_, flow)| figure(flow)).sum()
     }
 
-    /// A figure of the last weeks, oldest first; weeks before the first are left out.
+    /// Returns a figure of the last weeks, oldest first, without weeks before the start.
     pub fn trend(&self, week: u32, figure: impl Fn(&Flow) -> f64) -> Vec<(u32, f64)> {
         let from = (week + 1).saturating_sub(WEEKS).max(1);
         (from..=week).map(|week| (week, figure(&self.week(week)))).collect()
     }
 
-    /// Subscriptions at the end of the last weeks, told backwards from those of now.
+    /// Returns the subscriptions at the end of each of the last weeks, computed backwards from today's.
     pub fn stock(&self, week: u32) -> Vec<(u32, f64)> {
         let mut stock = self.sum(|held| held.customers);
         let mut all = Vec::new();
@@ -90,42 +79,39 @@ impl CustomerFacts {
         all
     }
 
-    /// Share of the customers of 30 days ago who have left since.
+    /// Returns the 30-day churn as a share.
     pub fn churn(&self) -> Option<f64> {
         let before = self.sum(|held| held.since_30_days) + self.lost_in_30_days;
         (before > 0.0).then(|| self.lost_in_30_days / before)
     }
 
-    /// Dollars a month and seat.
+    /// Returns the dollars per month and seat.
     pub fn revenue_per_seat(&self) -> Option<f64> {
         let seats = self.sum(|held| held.seats);
         (seats > 0.0).then(|| self.sum(|held| held.monthly) / seats)
     }
 
-    /// Units of the last day and customer.
+    /// Returns the units per seat on the last day.
     pub fn usage(&self) -> Option<f64> {
         let users = self.sum(|held| held.users);
         (users > 0.0).then(|| self.sum(|held| held.units) / users)
     }
 }
 
-/// Leads and spend of a pair of channel and group.
+/// Leads and spend of a channel in a group.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MeasuredGroup {
-    /// Leads.
     pub leads: f64,
-    /// Dollars.
     pub spend: f64,
 }
 
 impl MeasuredGroup {
-    /// Leads of a thousand dollars; none where nothing was spent.
+    /// Returns the leads per $1,000; `None` if nothing was spent.
     pub fn per_thousand(&self) -> Option<f64> {
         (self.spend > 0.0).then(|| self.leads / self.spend * 1000.0)
     }
 }
 
-/// Everything the readings say.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct MarketRows {
     groups: BTreeMap<Group, CustomerFacts>,
@@ -133,22 +119,20 @@ pub struct MarketRows {
 }
 
 impl MarketRows {
-    /// The facts of a group.
     pub fn of(&self, group: Group) -> CustomerFacts {
         self.groups.get(&group).cloned().unwrap_or_default()
     }
 
-    /// What was measured of a channel in a group, over the last four weeks.
+    /// Returns the results of a channel in a group over the last four weeks.
     pub fn measured(&self, channel: Channel, group: Group) -> MeasuredGroup {
         self.channels.get(&(channel.index(), group)).copied().unwrap_or_default()
     }
 
-    /// Dollars of the last four weeks for ads in a group.
+    /// Returns the dollars spent on ads for a group in the last four weeks.
     pub fn ad_spend(&self, group: Group) -> f64 {
         Channel::ALL.iter().map(|channel| self.measured(*channel, group).spend).sum()
     }
 
-    /// Takes a reading in place of what it said before.
     pub fn take(&mut self, reading: Reading, rows: &Rows) {
         self.forget(reading);
         for row in &rows.rows {
@@ -209,7 +193,11 @@ impl MarketRows {
         }
     }
 
-    fn take_held(&mut self, row: &[novamind_database::Cell], take: impl Fn(&mut Held, &[novamind_database::Cell])) {
+    fn take_held(
+        &mut self,
+        row: &[novamind_database::Cell],
+        take: impl Fn(&mut Held, &[novamind_database::Cell]),
+    ) {
         let (group, plan) = (Group::parse(text_at(row, 0)), Plan::parse(text_at(row, 1)));
         if let (Some(group), Some(plan)) = (group, plan) {
             let facts = self.groups.entry(group).or_default();
@@ -229,19 +217,19 @@ impl MarketRows {
     }
 }
 
-/// Dollars a day for ads in a group through a channel, as set now.
+/// Returns the advertising budget of a group in a channel, $ per day.
 pub fn ad_budget(company: &Company, channel: Channel, group: Group) -> f64 {
     let spend = company.settings.get(&ToolId::SetTargetedAdSpend).and_then(|all| all.get("targeted_spend"));
     let own = spend.and_then(|all| all.get(channel.id())).and_then(|groups| groups.get(group.id()));
     own.and_then(Value::as_f64).unwrap_or(0.0)
 }
 
-/// Dollars a day for ads in a group through all channels.
+/// Returns the advertising budget of a group in all channels, $ per day.
 pub fn ad_budgets(company: &Company, group: Group) -> f64 {
     Channel::ALL.iter().map(|channel| ad_budget(company, *channel, group)).sum()
 }
 
-/// Dollars a day of development for a group.
+/// Returns the development budget of a group, $ per day.
 pub fn development_budget(company: &Company, group: Group) -> f64 {
     let spend = company.settings.get(&ToolId::SetTargetedDevSpend).and_then(|all| all.get("targeted_spend"));
     spend.and_then(|all| all.get(group.id())).and_then(Value::as_f64).unwrap_or(0.0)

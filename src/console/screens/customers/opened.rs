@@ -1,4 +1,4 @@
-//! A group opened: where the person is in it, and how its panes are laid out.
+//! Selection and layout of an open group.
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
@@ -8,28 +8,23 @@ use super::fit::FitPane;
 use super::quality::QualityByWeekPane;
 use super::ways::CHOICES;
 use super::{Customers, CustomersPane};
-use crate::screens::panes::{Pane, Seat, draw_pane};
 use crate::context::Look;
+use crate::screens::panes::{Pane, Seat, draw_pane};
 use novamind_tui::canvas::Canvas;
 
-/// Where the person is in an open group.
 #[derive(Debug)]
 pub struct Opened {
-    /// The pane that has the focus.
     pub focus: CustomersPane,
-    /// The way that is chosen.
+    /// Selected link.
     pub choice: usize,
-    /// The line of the facts.
     pub fact: usize,
     /// Weeks before the last one.
     pub back: u32,
-    /// The flow that is selected.
+    /// Selected flow: leads, new or cancelled.
     pub flow: usize,
-    /// The cell of the triangle.
+    /// Selected cell of the cohorts.
     pub cohort: cohorts::CohortPlace,
-    /// First line of the fit.
     pub fit_line: usize,
-    /// First line of the study.
     pub line: usize,
 }
 
@@ -41,10 +36,8 @@ impl Default for Opened {
     }
 }
 
-/// Rows that the fit of a group wants with its border.
 const FIT: u16 = 24;
 
-/// Lays out the panes of the open group.
 pub fn arrange(customers: &Customers, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
     use CustomersPane::{Cohorts, Facts, Fit, Quality, Study, Ways, Weeks};
     let mut draw = |area: Rect, pane: CustomersPane| draw_pane(customers, pane, canvas, area, look);
@@ -75,10 +68,10 @@ pub fn arrange(customers: &Customers, canvas: &mut Canvas<'_>, area: Rect, look:
         draw(facts, Facts);
         draw(go, Ways);
     } else if matches!(focus, Cohorts | Fit | Quality) {
-        // Triangle, bars and curves need the width.
+        // The triangle, bars and curves need the full width.
         draw(area, focus);
     } else if area.width < 70 {
-        // Words side by side would be cut.
+        // Texts side by side would be cut.
         let [above, below] = split(area, area.height.saturating_sub(6));
         draw(above, if matches!(focus, Study | Weeks) { focus } else { Fit });
         draw(below, if focus == Facts { Facts } else { Ways });
@@ -92,7 +85,7 @@ pub fn arrange(customers: &Customers, canvas: &mut Canvas<'_>, area: Rect, look:
     }
 }
 
-/// Draws what the selected group is, below the list of all groups; it cannot be clicked.
+/// Draws a preview of the selected group below the list. It is not clickable.
 pub fn draw_preview(customers: &Customers, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
     let middle = if area.width >= 150 { area.width * 3 / 10 } else { 0 };
     let right = Constraint::Length(46.min(area.width / 2));

@@ -1,11 +1,11 @@
-//! Quality delivered to the open group by week, before the range of its floor as it was known then.
+//! Delivered quality of the open group by week, with the range of required quality as estimated then.
 
 use ratatui::layout::Rect;
 
 use super::Customers;
 use crate::action::Action;
-use crate::screens::panes::{Border, Pane, Seat};
 use crate::context::{Figure, Look};
+use crate::screens::panes::{Border, Pane, Seat};
 use novamind_session::identifiers::{Group, Plan};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
@@ -13,7 +13,6 @@ use novamind_tui::widgets::chart::Band;
 use novamind_tui::widgets::{Axis, Line, Plot, Side, Unit};
 use novamind_worker::company::Company;
 
-/// The quality of every plan, and the band of the floor.
 pub struct QualityByWeekPane;
 
 impl Pane<Customers> for QualityByWeekPane {
@@ -29,8 +28,8 @@ impl Pane<Customers> for QualityByWeekPane {
     fn border(&self, customers: &Customers, _: Rect, look: &Look<'_>) -> Border {
         let fit = customers.group(look.company).and_then(|group| look.company.fit(group));
         fit.map_or_else(Border::default, |fit| Border {
-            title: "Your quality and their floor".to_owned(),
-            note: format!("░ floor, now {}", fit.floor.quality()),
+            title: "Delivered and required quality".to_owned(),
+            note: format!("░ required, now {}", fit.floor.quality()),
             ..Border::default()
         })
     }
@@ -43,20 +42,21 @@ impl Pane<Customers> for QualityByWeekPane {
             Line::through(points, Role::Series(plan.index())).named(names[plan.index()])
         };
         let lines = Plan::ALL.map(line);
-        let band = Band { ends: floor_by_week(look.company, group), name: "floor" };
+        let band = Band { ends: floor_by_week(look.company, group), name: "required" };
         let x = Axis { write: &|week| format!("wk {week:.0}"), holds: &[] };
         let y = Side { unit: Unit::Number, holds: &[0.0] };
         Plot { lines: &lines, band: Some(&band), mark: None, x: &x, y: &y }.draw(canvas, seat.area);
     }
 }
 
-/// Delivered quality at the end of each week since the group is known.
+/// Returns the delivered quality at the end of each week since the group was found.
 pub fn quality_by_week(company: &Company, group: Group, plan: Plan) -> Vec<(f64, f64)> {
     let weeks = company.group_weeks.iter().enumerate();
     weeks.filter_map(|(at, week)| Some(((at + 1) as f64, week[group].quality?[plan]))).collect()
 }
 
-/// Least and greatest floor at the end of each week since the group is known.
+/// Returns the lowest and highest required quality, as estimated at the end of each week since the group was
+/// found.
 pub fn floor_by_week(company: &Company, group: Group) -> Vec<(f64, f64, f64)> {
     let weeks = company.group_weeks.iter().enumerate();
     let end = |(at, week): (usize, &novamind_session::identifiers::ByGroup<novamind_session::GroupWeek>)| {

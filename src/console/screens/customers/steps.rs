@@ -1,10 +1,10 @@
-//! Steps in the panes of an open group: along their lines, and on to the rows behind a figure.
+//! Keys shared by the panes of an open group: movement, and opening the rows behind a figure.
 
 use crate::action::Action;
-use crate::effect::Effect;
 use crate::context::Figure;
+use crate::effect::Effect;
 
-/// A place in a list after an action.
+/// Returns the index in a list after a movement.
 pub fn moved(at: usize, last: usize, action: Action) -> usize {
     match action {
         Action::Up => at.min(last).saturating_sub(1),
@@ -15,7 +15,6 @@ pub fn moved(at: usize, last: usize, action: Action) -> usize {
     }
 }
 
-/// Leads to the rows behind a figure, to look further.
 pub fn show_rows(figure: Option<Figure>) -> Vec<Effect> {
     figure.and_then(|figure| figure.sql).map(Effect::EditSql).into_iter().collect()
 }

@@ -1,19 +1,18 @@
-//! What the study of a group says.
+//! Estimates of the group's market study.
 
 use ratatui::layout::Rect;
 
 use super::Customers;
 use super::steps::{moved, show_rows};
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::market::model::level_of;
 use crate::screens::market::report;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::percent;
 use novamind_tui::canvas::Canvas;
 
-/// Its estimates.
 pub struct StudyPane;
 
 impl Pane<Customers> for StudyPane {
@@ -22,7 +21,7 @@ impl Pane<Customers> for StudyPane {
     }
 
     fn figure(&self, customers: &Customers, look: &Look<'_>) -> Option<Figure> {
-        let title = format!("what the study of {} says", customers.group(look.company)?);
+        let title = format!("market study of {}", customers.group(look.company)?);
         Some(Figure { title, term: "info-level", sql: None, why: None })
     }
 
@@ -40,7 +39,11 @@ impl Pane<Customers> for StudyPane {
         customers.group(look.company).map_or_else(Border::default, |group| {
             let level = level_of(look.company, group);
             let noise = look.company.terms.level(level).map_or(0.0, |level| level.noise);
-            let note = format!("level {level} · ±{} · {}", percent(noise, 0), report::studied(look.company, group));
+            let note = format!(
+                "study level {level} · ±{} · {}",
+                percent(noise, 0),
+                report::studied(look.company, group)
+            );
             Border { title: format!("Study of {group}"), note, ..Border::default() }
         })
     }

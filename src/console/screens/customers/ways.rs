@@ -1,36 +1,34 @@
-//! Where an open group leads: to the cells of the tools that are for it, to its study, to its customers.
+//! Links from an open group to the forms of tools, its study and its customers.
 
 use ratatui::layout::Rect;
 
 use super::Customers;
 use super::steps::moved;
 use crate::action::Action;
+use crate::context::{Look, ScreenId};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Look, ScreenId};
 use novamind_session::identifiers::Group;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_row;
 
-/// Tools of a group, and what they do for it.
+/// Tools with a setting for the group, and what each sets.
 const TOOLS: [(ToolId, &str); 6] = [
     (ToolId::SetTargetedAdSpend, "ads"),
     (ToolId::SetTargetedDevSpend, "development"),
-    (ToolId::SetTargetedOpsSpend, "support"),
+    (ToolId::SetTargetedOpsSpend, "operations"),
     (ToolId::SetPromotion, "discounts"),
     (ToolId::SetLeadPromotion, "for leads"),
     (ToolId::SetAdsStrength, "ads shown"),
 ];
 
-/// Ways that are no tools: the insight report, and the customers themselves.
+/// Links that are not tools: the market study and the customers.
 const OTHERS: [(&str, &str); 2] = [("Market", "order a study"), ("SQL", "its customers")];
 
-/// Number of things that can be chosen: the tools and the other ways.
 pub const CHOICES: usize = TOOLS.len() + OTHERS.len();
 
-/// What a choice leads to.
 fn choose(choice: usize, group: Group) -> Effect {
     match TOOLS.get(choice) {
         Some((tool, _)) => Effect::ShowCell(*tool, group.to_string()),
@@ -44,7 +42,6 @@ fn choose(choice: usize, group: Group) -> Effect {
     }
 }
 
-/// The ways.
 pub struct WaysPane;
 
 impl Pane<Customers> for WaysPane {

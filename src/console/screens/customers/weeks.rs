@@ -1,4 +1,4 @@
-//! The weeks of a group: how many customers it has, who came, who signed, who left.
+//! Weeks of a group: customers, leads, sign-ups and cancellations.
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
@@ -7,30 +7,28 @@ use super::model::{self, CustomerFacts, Flow};
 use super::steps::{moved, show_rows};
 use super::{Customers, CustomersPane};
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat, draw_framed};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, grouped};
-use novamind_record::figures::WeekFigure;
 use novamind_insight::WeekQuantity;
+use novamind_record::figures::WeekFigure;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::text::{arrow, count};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::{note_room, summary, zero_if_near};
 use novamind_tui::widgets::{Axis, Line, Plot, Side, Unit};
 
-/// Flows that can be selected: leads, new, cancelled.
+/// Selectable flows with their terms and figures.
 const FLOWS: [(&str, &str, WeekFigure); 3] = [
     ("leads", "lead", WeekFigure::Leads),
     ("new customers", "conversion", WeekFigure::NewSubscribers),
     ("cancellations", "churn", WeekFigure::Cancellations),
 ];
 
-/// Customers by week, and below them the flows.
 pub struct WeeksPane;
 
 impl WeeksPane {
-    /// The week that is selected.
     fn week(&self, customers: &Customers, look: &Look<'_>) -> u32 {
         look.company.seen.week.saturating_sub(customers.opened.back)
     }
@@ -68,7 +66,7 @@ impl Pane<Customers> for WeeksPane {
         let [left, right] = [Action::Left, Action::Right].map(label);
         let [up, down] = [Action::Up, Action::Down].map(label);
         let note = customers.group(look.company).map_or(String::new(), |group| {
-            // Without the focus no flow is selected: all of the last week are told.
+            // Without the focus the pane summarizes all flows of the last week.
             let focused = customers.is_on(CustomersPane::Weeks);
             let (week, flow) = match focused {
                 true => (self.week(customers, look), customers.opened.flow),
@@ -88,7 +86,10 @@ impl Pane<Customers> for WeeksPane {
         let lines = [
             Line::through(trend(|flow| flow.leads), Role::Series(2)).named("leads"),
             Line::through(trend(|flow| flow.signed), Role::Good).named("new"),
-            Line { scattered: true, ..Line::through(trend(|flow| flow.cancelled), Role::Bad).named("left") },
+            Line {
+                scattered: true,
+                ..Line::through(trend(|flow| flow.cancelled), Role::Bad).named("cancelled")
+            },
         ];
         let mark = seat.focused.then(|| f64::from(self.week(customers, look)));
         plot(canvas, seat.area, &lines, mark, &[0.0]);
@@ -126,7 +127,7 @@ fn plot(canvas: &mut Canvas<'_>, area: Rect, lines: &[Line], mark: Option<f64>, 
     Plot { lines, band: None, mark, x: &x, y: &y }.draw(canvas, area);
 }
 
-/// A week in words: the selected flow with its change, or all of them.
+/// Describes a week: the selected flow with its change, or all flows.
 fn flow_words(facts: &CustomerFacts, week: u32, flow: usize, room: usize) -> String {
     let (now, before) = (facts.week(week), facts.week(week.saturating_sub(1)));
     let of = |own: &Flow| [own.leads, own.signed, own.cancelled];
@@ -139,7 +140,11 @@ fn flow_words(facts: &CustomerFacts, week: u32, flow: usize, room: usize) -> Str
             arrow(now - before, &whole((now - before).abs()))
         );
     }
-    let full =
-        format!("{} · {} new · {} left", count(now.leads, "lead"), whole(now.signed), whole(now.cancelled));
+    let full = format!(
+        "{} · {} new · {} cancelled",
+        count(now.leads, "lead"),
+        whole(now.signed),
+        whole(now.cancelled)
+    );
     if full.len() <= room { full } else { format!("+{} -{}", compact(now.signed), compact(now.cancelled)) }
 }

@@ -1,15 +1,15 @@
-//! What the seats of a company would cost in compute: an estimate from what the player can see.
+//! Estimated compute cost of an enterprise's seats, from figures that the player can see.
 
 use super::model::Thread;
-use novamind_worker::company::Company;
 use novamind_rules::{Market, SeatUsage};
-use novamind_tools::ToolId;
 use novamind_session::identifiers::{Group, Plan};
+use novamind_tools::ToolId;
+use novamind_worker::company::Company;
 
-/// Days of a month of compute, as the screen of the product counts them.
+/// Days per month, as on the product screen.
 const MONTH: f64 = 30.0;
 
-/// What a run sells, as the screens know it.
+/// Returns the sales figures for the rules.
 pub fn market_of(company: &Company, usage: &SeatUsage) -> Market {
     let per_plan = |tool: ToolId| Plan::ALL.map(|plan| company.setting(tool, plan.id()));
     let studied = company.insights.iter().map(|(group, told)| (*group, told.estimates.usage_volume));
@@ -22,30 +22,29 @@ pub fn market_of(company: &Company, usage: &SeatUsage) -> Market {
     }
 }
 
-/// Units a day and seat of a group, and where the figure comes from: measured in the group, else its last study.
+/// Returns the units per day and seat of a group, with the source: usage on the last day, otherwise the
+/// market study.
 pub fn per_seat(usage: &SeatUsage, company: &Company, group: &str) -> Option<(f64, String)> {
     if let Some(units) = usage.measured(group) {
         return Some((units, format!("{group} on the last day")));
     }
     let insights = Group::parse(group).and_then(|group| company.insights.get(&group))?;
-    let words = format!("the study of {group}, level {}", insights.info_level);
+    let words = format!("market study of {group}, level {}", insights.info_level);
     Some((insights.estimates.usage_volume, words))
 }
 
-/// Money of one line of an offer, dollars a month.
+/// Money of one line of an offer, $ per month.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Money {
-    /// What the company would pay.
+    /// Payment of the enterprise.
     pub monthly: f64,
-    /// What compute would cost.
     pub compute: Option<f64>,
-    /// The quota of the plan and what the company would use, units a day, where the quota is less. All seats of a company
-    /// share one quota.
+    /// Quota of the plan and estimated usage, units per day, if the quota is lower. All seats of an
+    /// enterprise share one quota.
     pub covered: Option<(f64, f64)>,
 }
 
 impl Money {
-    /// Of a plan at a price a seat.
     pub fn of(usage: &SeatUsage, company: &Company, thread: &Thread, (plan, price): (Plan, f64)) -> Money {
         let wanted = per_seat(usage, company, &thread.group).map(|(units, _)| units * thread.seats);
         let quota = company.setting(ToolId::SetUsageQuotas, plan.id());
@@ -55,13 +54,13 @@ impl Money {
         Money { monthly: price * thread.seats, compute, covered }
     }
 
-    /// Share of the payment that compute leaves.
+    /// Returns the share of the payment that remains after compute.
     pub fn margin(&self) -> Option<f64> {
         self.compute.filter(|_| self.monthly > 0.0).map(|compute| 1.0 - compute / self.monthly)
     }
 }
 
-/// Dollars a unit with the model of a plan.
+/// Returns the compute cost of a plan's model, $ per unit.
 fn unit_cost(company: &Company, plan: Plan) -> Option<f64> {
     let tier = company.setting(ToolId::SetModelTiers, plan.id()) as u8;
     Some(company.costs.model_tiers.get(&tier)?.cost_per_usage_unit)
@@ -102,7 +101,7 @@ mod tests {
         assert_eq!(capped.compute, Some(1000.0 * 30.0 * cost), "all seats share one quota");
         assert_eq!(capped.covered, Some((1000.0, 4000.0)));
         let (studied, source) = per_seat(&usage, &company, "E2").expect("a study");
-        assert!(studied > 0.0 && source == "the study of E2, level 1", "{source}");
+        assert!(studied > 0.0 && source == "market study of E2, level 1", "{source}");
         assert_eq!(per_seat(&usage, &company, "D_E01"), None);
     }
 }

@@ -1,4 +1,4 @@
-//! The list of threads.
+//! List of threads.
 
 use ratatui::layout::Rect;
 
@@ -6,19 +6,18 @@ use super::model::{State, Thread};
 use super::offer::in_words;
 use super::{Inbox, InboxPane, InboxView, post};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::grouped;
 use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::text::{count, wrapped};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell, Column, Table};
 
-/// Columns of a name in a narrow list: the number beside it tells companies apart.
+/// Width of names in a narrow list; the number next to the name identifies the enterprise.
 const NAME: u16 = 14;
 
-/// The threads of a view.
 pub struct ThreadListPane;
 
 impl Pane<Inbox> for ThreadListPane {
@@ -118,14 +117,13 @@ fn draw_nobody(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'
     if lines.len() > inside.height as usize {
         let zoom = look.keys.label(Action::Zoom).unwrap_or_default();
         lines.truncate((inside.height as usize).saturating_sub(1));
-        lines.push(format!("… {zoom} shows the rest"));
+        lines.push(format!("… {zoom} shows more"));
     }
     for (row, line) in rows_of(inside).zip(lines) {
         canvas.text(row, &line, Role::Dim);
     }
 }
 
-/// What an empty list says.
 fn nobody(inbox: &Inbox, look: &Look<'_>) -> String {
     let key = |action: Action| look.keys.label(action).unwrap_or_default();
     if !inbox.letters.threads.is_empty() {
@@ -134,32 +132,30 @@ fn nobody(inbox: &Inbox, look: &Look<'_>) -> String {
     let funnels: Vec<String> =
         look.company.funnels.iter().map(|own| format!("· {}", own.in_words())).collect();
     format!(
-        "No company has asked for an offer yet. Ads bring companies ({} set_targeted_ad_spend). A better model tier, \
-         development for their group and a quota for a whole office make a plan better for them.\n\n{}",
+        "No enterprise has asked for an offer yet. Advertise to enterprise groups ({} set_targeted_ad_spend). A higher \
+         model tier, development for their group and a quota for all seats make a plan more attractive.\n\n{}",
         key(Action::Tools),
         funnels.join("\n")
     )
 }
 
-/// Columns of the list.
 pub(super) fn columns(view: InboxView) -> Vec<Column> {
     let day = if view == InboxView::Waiting { "left" } else { "since" };
     vec![
         Column::words("✓"),
         Column::numbers(day),
-        Column::words("company").at_least(NAME),
+        Column::words("enterprise").at_least(NAME),
         Column::numbers("no."),
         Column::words("group"),
         Column::numbers("seats"),
-        Column::numbers("they ask"),
+        Column::numbers("their ask"),
         Column::words("kind"),
-        Column::words(if view == InboxView::Over { "end" } else { "you offered" }).at_most(34),
+        Column::words(if view == InboxView::Over { "end" } else { "your offer" }).at_most(34),
         Column::numbers("offers"),
         Column::numbers("needs quota"),
     ]
 }
 
-/// A whole number, where there is one.
 fn figure(value: Option<f64>) -> Cell {
     match value {
         Some(value) => Cell::number(value, grouped(value, 0)),
@@ -167,7 +163,6 @@ fn figure(value: Option<f64>) -> Cell {
     }
 }
 
-/// A thread in the list.
 pub(super) fn row_of(thread: &Thread, marked: bool) -> Vec<Cell> {
     let day = match (thread.state, thread.turns.last()) {
         (State::Waiting(left), _) => {

@@ -1,4 +1,5 @@
-//! Negotiations with companies: who waits, what was said, and offers to one or to many by a rule.
+//! Negotiations with enterprises: waiting threads, messages, and offers to one enterprise or, by a rule, to
+//! many.
 
 mod estimate;
 mod list;
@@ -20,17 +21,17 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use self::estimate::market_of;
 use self::list::{columns, row_of};
 use self::model::{Letters, State, Thread};
-use self::offer::{TermChoice, Offer, TERMS};
+use self::offer::{Offer, TERMS, TermChoice};
 use self::outcomes::Outcomes;
 use self::ruling::Ruling;
-use super::panes::{Pane, Paned, draw_pane};
-use crate::context::{Look, ScreenId};
 use super::ScreenState;
+use super::panes::{Pane, Paned, draw_pane};
 use crate::action::Action;
+use crate::context::{Look, ScreenId};
 use crate::effect::Effect;
 use novamind_base::notation::parse_number;
-use novamind_rules::{AskingThread, SeatUsage};
 use novamind_database::Rows;
+use novamind_rules::{AskingThread, SeatUsage};
 use novamind_session::identifiers::Group;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, Click};
@@ -40,25 +41,25 @@ use novamind_worker::company::Company;
 use novamind_worker::message::News;
 use novamind_worker::readings::Reading;
 
-/// Its panes.
+/// Panes of the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum InboxPane {
-    /// The threads of a view.
+    /// Threads of a view.
     #[default]
     List,
-    /// What was said, or what every marked thread would get.
+    /// Messages of the thread, or the preview of a bulk offer.
     Thread,
-    /// The offer that is made.
+    /// The offer being edited.
     Offer,
-    /// What became of first offers, in the place of the list.
+    /// Outcomes of first offers, in place of the list.
     Outcomes,
 }
 
-/// The panes in the order of the tab key: with the threads, and with what became of first offers.
+/// Panes in tab order: with the list of threads, and with the outcomes.
 const LISTED: [InboxPane; 3] = [InboxPane::List, InboxPane::Thread, InboxPane::Offer];
 const COUNTED: [InboxPane; 3] = [InboxPane::Outcomes, InboxPane::Thread, InboxPane::Offer];
 
-/// Actions worth showing where one thread is looked at.
+/// Footer actions for a single thread.
 const OFFER_HINTS: [Action; 6] = [
     Action::SendOffer,
     Action::OfferPlan,
@@ -68,7 +69,7 @@ const OFFER_HINTS: [Action; 6] = [
     Action::Close,
 ];
 
-/// Actions that do nothing without a thread.
+/// Actions that need a thread.
 const NEEDS_A_THREAD: [Action; 8] = [
     Action::Mark,
     Action::MarkAll,
@@ -79,20 +80,17 @@ const NEEDS_A_THREAD: [Action; 8] = [
     Action::InboxGroup,
     Action::InboxSql,
 ];
-const NO_THREAD: &str = "there is no thread here";
+const NO_THREAD: &str = "No thread is selected";
 
-/// Height of the offer, with its border.
 const OFFER_HEIGHT: u16 = 10;
 
-/// Which threads are listed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum InboxView {
-    /// The player's move.
+    /// The player must answer.
     #[default]
     Waiting,
-    /// The companies' move.
+    /// The enterprise must answer.
     Theirs,
-    /// Ended.
     Over,
 }
 
@@ -114,42 +112,36 @@ impl InboxView {
     }
 }
 
-/// The screen.
+/// The inbox screen.
 #[derive(Default)]
 pub struct Inbox {
     focus: InboxPane,
     view: InboxView,
     letters: Letters,
-    /// What seats of companies use.
     usage: SeatUsage,
-    /// Plans that companies named with their prices.
+    /// Plans that enterprises named with their prices.
     named: novamind_rules::Letters,
-    /// Rules while they are typed, and those that were sent last.
     ruling: Option<Ruling>,
-    /// What became of first offers, while it stands in the place of the list.
+    /// Outcomes of first offers, while they replace the list.
     outcomes: Option<Outcomes>,
     last_rules: Option<String>,
     table: Table,
-    /// Threads of the rows of the table, as places among all threads.
+    /// Indexes of the listed threads among all threads.
     rows: Vec<usize>,
-    /// Threads that are marked, by number.
     marked: BTreeSet<u32>,
-    /// Offers to single threads that were touched.
     drafts: BTreeMap<u32, Offer>,
-    /// The rule for marked threads.
+    /// Offer to the marked threads.
     rule: Option<Offer>,
-    /// The last offer that was sent and makes sense for others.
+    /// Last sent offer that can be reused for other enterprises.
     last: Option<Offer>,
-    /// The term with the cursor.
     term: usize,
-    /// Its value while it is typed.
+    /// Its value while the user types.
     typing: Option<Field>,
-    /// Rows that the thread is scrolled back, or the preview forward.
+    /// Rows scrolled: backwards in a thread, forwards in a preview.
     scroll: u16,
 }
 
 impl Inbox {
-    /// Brings the threads up to date and lists them.
     fn refresh(&mut self, company: &Company) {
         let place = self.place();
         self.letters.settle(self.asking(company), &company.names);
@@ -160,13 +152,13 @@ impl Inbox {
         self.list(place);
     }
 
-    /// Threads as shown, and the selected one.
+    /// Returns the numbers of the listed threads, and of the selected one.
     fn place(&self) -> (Vec<u32>, Option<u32>) {
         let shown = self.table.shown().iter().filter_map(|row| self.number_of(*row)).collect();
         (shown, self.here().map(|thread| thread.number))
     }
 
-    /// Builds the table again; the selected thread stays selected, or the one that followed it.
+    /// Rebuilds the table. The selection stays on its thread or moves to the next one.
     fn list(&mut self, (shown, here): (Vec<u32>, Option<u32>)) {
         let threads = &self.letters.threads;
         self.rows = (0..threads.len()).filter(|at| self.view.holds(threads[*at].state)).collect();
@@ -181,14 +173,14 @@ impl Inbox {
         }
     }
 
-    /// Threads that wait, with everything that rules ask.
+    /// Returns the waiting threads with all fields that rules use.
     fn asking(&self, company: &Company) -> Vec<AskingThread> {
         let market = market_of(company, &self.usage);
         let waiting = company.seen.waiting.iter();
         waiting.map(|own| AskingThread::of(own, &self.named, &market)).collect()
     }
 
-    /// Shows a thread among those that wait.
+    /// Selects a waiting thread.
     pub fn show(&mut self, number: u32, company: &Company) {
         self.view = InboxView::Waiting;
         self.close_outcomes();
@@ -208,12 +200,11 @@ impl Inbox {
         (0..self.rows.len()).find(|row| self.number_of(*row) == Some(number))
     }
 
-    /// The selected thread.
     fn here(&self) -> Option<&Thread> {
         self.letters.threads.get(*self.rows.get(self.table.selected()?)?)
     }
 
-    /// Threads that an offer goes to: the marked ones, or the selected one.
+    /// Returns the recipients of an offer: the marked threads, otherwise the selected one.
     fn targets(&self) -> Vec<&Thread> {
         if self.marked.is_empty() {
             return self.here().into_iter().collect();
@@ -222,7 +213,6 @@ impl Inbox {
         self.letters.threads.iter().filter(marked).collect()
     }
 
-    /// The offer on screen.
     fn offer(&self) -> Offer {
         if !self.marked.is_empty() {
             return self.rule.clone().unwrap_or_else(Offer::at_list);
@@ -303,7 +293,7 @@ impl Inbox {
     }
 }
 
-/// List prices of the plans, dollars a month and seat.
+/// Returns the list prices of the plans, $ per month and seat.
 fn list_prices(company: &Company) -> [f64; 3] {
     ["A", "B", "C"].map(|plan| company.setting(ToolId::SetPrices, plan))
 }
@@ -440,7 +430,7 @@ impl Paned for Inbox {
             Action::TakeAsk => {
                 let targets = self.targets();
                 if !targets.is_empty() && targets.iter().all(|thread| thread.asked().is_none()) {
-                    return Some(vec![Effect::Complain("no price has been asked yet: name one".to_owned())]);
+                    return Some(vec![Effect::Complain("No asking price yet. Type a price.".to_owned())]);
                 }
                 self.set_offer(Offer::as_asked());
             }
@@ -477,13 +467,13 @@ impl Paned for Inbox {
             }
             return;
         }
-        // The offer needs its columns; a list that loses its last column shows more with the right key.
+        // The offer needs all its columns; the list can drop its last ones.
         let right = (area.width * 43 / 100).max(offer_pane::WORTH + 2);
         let [list, right] = Layout::horizontal([Constraint::Min(0), Constraint::Length(right)]).areas(area);
         let [above, offer] =
             Layout::vertical([Constraint::Min(0), Constraint::Length(OFFER_HEIGHT)]).areas(right);
         draw_pane(self, first, canvas, list, look);
-        // What was said stands above what every marked thread would get, where there is room.
+        // Messages are drawn above the preview if both fit.
         let beside = match !self.marked.is_empty() && above.height >= 20 {
             true => Constraint::Percentage(45),
             false => Constraint::Length(0),

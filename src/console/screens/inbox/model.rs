@@ -1,55 +1,48 @@
-//! Threads of negotiations as the player may know them: what the rows say, and what they do not.
+//! Negotiation threads with the information that the player may have.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use novamind_worker::readings::Reading;
-use novamind_rules::{AskingThread, offer_of, plan_in};
 use novamind_database::{Rows, number_at, text_at};
+use novamind_rules::{AskingThread, offer_of, plan_in};
 use novamind_session::CompanyNames;
 use novamind_session::identifiers::Plan;
+use novamind_worker::readings::Reading;
 
-/// One row of a thread.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Turn {
-    /// Number in its thread.
     pub number: u32,
     /// `customer`, `agent` or `system`.
     pub sender: String,
-    /// Words; empty for offers.
+    /// Message; empty for offers.
     pub text: String,
-    /// What the player offered.
+    /// Plans and prices that the player offered.
     pub offers: Vec<(Plan, f64)>,
-    /// Price that the company named.
     pub price: Option<f64>,
-    /// Day it was written.
     pub day: u32,
-    /// Why it closed the thread; empty otherwise.
+    /// Reason for closing the thread; empty if it stays open.
     pub closes: String,
 }
 
-/// Whose move it is, or how a thread ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum State {
-    /// The company waits for the player, who has some days left.
+    /// The enterprise waits for the player, for this number of days.
     Waiting(u32),
-    /// The player waits for the company.
+    /// The player waits for the enterprise.
     Theirs,
-    /// They agreed.
     Accepted,
     /// The player ended it.
     Rejected,
-    /// The company fell silent or was not answered. No row says so; its subscription does.
+    /// It ended without a closing row: the subscription shows that the enterprise left.
     #[default]
     Lost,
 }
 
 impl State {
-    /// Whether an offer goes into the thread.
+    /// Returns whether it accepts offers.
     pub fn is_open(self) -> bool {
         matches!(self, State::Waiting(_) | State::Theirs)
     }
 
-    /// In words.
     pub fn words(self) -> &'static str {
         match self {
             State::Waiting(_) => "waiting for you",
@@ -61,36 +54,29 @@ impl State {
     }
 }
 
-/// A thread.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Thread {
-    /// Its number.
     pub number: u32,
-    /// The company.
+    /// Customer number of the enterprise.
     pub customer: u32,
-    /// Its name.
     pub name: String,
-    /// Group of the company.
     pub group: String,
-    /// How it began, as the table says it.
+    /// Kind as in the table.
     pub kind: String,
-    /// Whole seats.
     pub seats: f64,
-    /// Whose move it is.
     pub state: State,
-    /// Its rows, the oldest first.
+    /// Its rows, oldest first.
     pub turns: Vec<Turn>,
-    /// What rules see of it while it waits for the player.
+    /// Fields for rules, while it waits for the player.
     pub asking: Option<AskingThread>,
 }
 
 impl Thread {
-    /// The company by its name and number.
+    /// Returns the name and number of the enterprise.
     pub fn company(&self) -> String {
         format!("{} #{}", self.name, self.customer)
     }
 
-    /// Kind in words.
     pub fn kind_in_words(&self) -> &str {
         match self.kind.as_str() {
             "new_lead" => "new lead",
@@ -101,7 +87,7 @@ impl Thread {
         }
     }
 
-    /// Price that the company named last, and the plan its words name with it.
+    /// Returns the last price that the enterprise named, with the plan if its message names one.
     pub fn asked(&self) -> Option<(Option<Plan>, f64)> {
         if let Some(own) = &self.asking {
             return Some((own.asked_plan, own.waiting.asked?));
@@ -110,7 +96,7 @@ impl Thread {
         Some((plan_in(&turn.text).or_else(|| self.only_offer()), turn.price?))
     }
 
-    /// The plan that its price is for, or whose price it asks.
+    /// Returns the plan for its price, or the plan whose price it asks about.
     pub fn asked_plan(&self) -> Option<Plan> {
         match &self.asking {
             Some(own) => own.asked_plan,
@@ -125,7 +111,7 @@ impl Thread {
         }
     }
 
-    /// How a thread that came to nothing ended; none while it is open, and where a row of it says so.
+    /// Describes how a failed thread ended; `None` if it is open or one of its rows says so.
     pub fn end_in_words(&self) -> Option<String> {
         if self.state != State::Lost {
             return None;
@@ -134,13 +120,13 @@ impl Thread {
         Some(match last.sender.as_str() {
             "agent" => {
                 let offers = super::offer::in_words(&last.offers);
-                format!("{} declined {offers} of day {} without another word.", self.company(), last.day)
+                format!("{} declined {offers} of day {} without giving a reason.", self.company(), last.day)
             }
             _ => format!("{} got no answer to its message of day {}.", self.company(), last.day),
         })
     }
 
-    /// What the player offered last.
+    /// Returns the player's last offer.
     pub fn offered(&self) -> &[(Plan, f64)] {
         if let Some(own) = &self.asking {
             return &own.waiting.last_offer;
@@ -150,36 +136,30 @@ impl Thread {
     }
 }
 
-/// A company.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Firm {
-    /// Group.
     pub group: String,
-    /// Size and trade.
+    /// Size and industry.
     pub trade: String,
-    /// Culture, way to decide, concern.
+    /// Culture, decision process and main concern.
     pub manner: [String; 3],
-    /// State of its subscription.
     pub status: String,
-    /// Its plan.
     pub plan: String,
-    /// What it pays for a seat and month.
+    /// Price per seat and month.
     pub price: f64,
-    /// Day since which it subscribes, or asked.
+    /// Day on which it subscribed or asked.
     pub since: u32,
 }
 
-/// Every thread that was read.
 #[derive(Debug, Clone, Default)]
 pub struct Letters {
     read: BTreeMap<u32, Thread>,
     firms: BTreeMap<u32, Firm>,
-    /// Threads: those that wait first, in the order in which they are lost, then the newest.
+    /// Waiting threads first, by deadline, then the others, newest first.
     pub threads: Vec<Thread>,
 }
 
 impl Letters {
-    /// Takes what the database answered.
     pub fn take(&mut self, reading: Reading, rows: &Rows) {
         match reading {
             Reading::EnterpriseTurns => self.read = threads_of(rows),
@@ -188,16 +168,15 @@ impl Letters {
         }
     }
 
-    /// The company of a thread.
     pub fn firm(&self, customer: u32) -> Option<&Firm> {
         self.firms.get(&customer)
     }
 
-    /// Brings threads and those that wait together.
+    /// Combines the threads with the waiting ones and sorts them.
     pub fn settle(&mut self, waiting: Vec<AskingThread>, names: &CompanyNames) {
         let mut left = self.read.clone();
         let mut threads: Vec<Thread> = waiting.into_iter().map(|own| of_waiting(own, &mut left)).collect();
-        // A company has one open thread at the most, its newest.
+        // An enterprise has at most one open thread, its newest.
         let mut newest: BTreeSet<u32> = threads.iter().map(|thread| thread.customer).collect();
         for (_, mut thread) in left.into_iter().rev() {
             let firm = self.firms.get(&thread.customer);
@@ -234,7 +213,7 @@ fn of_waiting(asking: AskingThread, read: &mut BTreeMap<u32, Thread>) -> Thread 
     }
 }
 
-/// State of a thread that does not wait for the player.
+/// Returns the state of a thread that does not wait for the player.
 fn state_of(thread: &Thread, firm: Option<&Firm>) -> State {
     let Some(last) = thread.turns.last() else { return State::Lost };
     let there = firm.is_none_or(|firm| matches!(firm.status.as_str(), "lead" | "subscribed"));
@@ -248,7 +227,7 @@ fn state_of(thread: &Thread, firm: Option<&Firm>) -> State {
 
 fn threads_of(rows: &Rows) -> BTreeMap<u32, Thread> {
     let mut threads: BTreeMap<u32, Thread> = BTreeMap::new();
-    // The answer begins with the newest row.
+    // The reading is sorted newest first.
     for row in rows.rows.iter().rev() {
         let number = number_at(row, 0) as u32;
         let thread = threads.entry(number).or_default();
@@ -256,7 +235,7 @@ fn threads_of(rows: &Rows) -> BTreeMap<u32, Thread> {
         thread.number = number;
         thread.customer = number_at(row, 1) as u32;
         thread.kind = text_at(row, 2).to_owned();
-        // Rows of the player count one seat, whatever the company has.
+        // The player's rows have a seat count of 1.
         thread.seats = thread.seats.max(if text_at(row, 4) == "agent" { 1.0 } else { number_at(row, 8) });
         thread.turns.push(Turn {
             number: number_at(row, 3) as u32,

@@ -1,36 +1,34 @@
-//! Offers as the person writes them: plans at prices, fixed or relative to the list or to what a company asks.
+//! Offers as the user edits them: plans with prices, absolute or relative to the list price or the asking
+//! price.
 
 use super::model::Thread;
 use novamind_base::notation::grouped;
 use novamind_session::identifiers::Plan;
 
-/// ToolLimits of an offer, at most as many as a company accepts in one message.
+/// Terms per offer; the maximum for one message.
 pub const TERMS: usize = 3;
 
 /// The plan of a term.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TermChoice {
-    /// The term is not used.
     Nothing,
-    /// This plan.
     Fixed(Plan),
-    /// The plan that the company named with its price.
+    /// The plan that the enterprise named with its price.
     Theirs,
 }
 
-/// What the value of a term is a part of.
+/// Basis of the value of a term.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Basis {
-    /// Dollars a month and seat.
+    /// Dollars per month and seat.
     Dollars,
-    /// Percent of the list price of the plan.
+    /// Percent of the plan's list price.
     List,
-    /// Percent of the price that the company named.
+    /// Percent of the asking price.
     Asked,
 }
 
 impl Basis {
-    /// In words.
     pub fn words(self) -> &'static str {
         match self {
             Basis::Dollars => "$",
@@ -40,12 +38,9 @@ impl Basis {
     }
 }
 
-/// One line of an offer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Term {
-    /// Its plan.
     pub plan: TermChoice,
-    /// What the value is a part of.
     pub basis: Basis,
     /// Dollars or percent.
     pub value: f64,
@@ -54,7 +49,6 @@ pub struct Term {
 const UNUSED: Term = Term { plan: TermChoice::Nothing, basis: Basis::List, value: 100.0 };
 
 impl Term {
-    /// Its plan in words.
     pub fn plan_in_words(&self) -> &'static str {
         match self.plan {
             TermChoice::Nothing => "–",
@@ -63,13 +57,12 @@ impl Term {
         }
     }
 
-    /// Its value as it is typed.
+    /// Returns its value as text for the input field.
     pub fn value_in_words(&self) -> String {
         let decimals = if self.value.fract() == 0.0 && self.basis != Basis::Dollars { 0 } else { 2 };
         grouped(self.value, decimals)
     }
 
-    /// The next plan.
     pub fn turn_plan(&mut self) {
         self.plan = match self.plan {
             TermChoice::Nothing => TermChoice::Fixed(Plan::A),
@@ -80,7 +73,7 @@ impl Term {
         };
     }
 
-    /// The next basis. A number of dollars would be no percentage and the other way round, so it starts anew.
+    /// Selects the next basis and resets the value, because dollars and percent are not interchangeable.
     pub fn turn_basis(&mut self, price: Option<f64>) {
         (self.basis, self.value) = match self.basis {
             Basis::List => (Basis::Asked, self.value),
@@ -89,7 +82,8 @@ impl Term {
         };
     }
 
-    /// Plan and price for a company; nothing if the term is not used or there is no price to start from.
+    /// Returns the plan and price for a thread; `None` if the term is unused or its reference price is
+    /// missing.
     pub fn price(&self, thread: &Thread, lists: [f64; 3]) -> Option<(Plan, f64)> {
         let asked = thread.asked();
         let plan = match self.plan {
@@ -106,22 +100,22 @@ impl Term {
     }
 }
 
-/// An offer, or a rule for many.
+/// An offer to one enterprise, or a rule for many.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Offer(pub [Term; TERMS]);
 
 impl Offer {
-    /// Plan B at its list price.
     pub fn at_list() -> Offer {
         Offer([Term { plan: TermChoice::Fixed(Plan::B), ..UNUSED }, UNUSED, UNUSED])
     }
 
-    /// What the company asks, for the plan it named.
+    /// Returns the asking price, for the plan that the enterprise named.
     pub fn as_asked() -> Offer {
         Offer([Term { plan: TermChoice::Theirs, basis: Basis::Asked, value: 100.0 }, UNUSED, UNUSED])
     }
 
-    /// Where to start with a company: its price, or the list price of the plan it asks about.
+    /// Returns the initial offer to an enterprise: its asking price, otherwise the list price of the plan
+    /// that it asks about.
     pub fn first_for(thread: &Thread) -> Offer {
         match (thread.asked_plan(), thread.asked()) {
             (Some(_), Some(_)) => Offer::as_asked(),
@@ -130,19 +124,19 @@ impl Offer {
         }
     }
 
-    /// Whether it makes sense for other companies as it is.
+    /// Returns whether it can be reused for other enterprises.
     pub fn is_rule(&self) -> bool {
         self.0.iter().all(|term| term.plan == TermChoice::Nothing || term.basis != Basis::Dollars)
     }
 
-    /// What a company would be sent.
+    /// Returns the plans and prices for a thread.
     ///
     /// # Errors
-    /// Why it would be sent nothing.
+    /// The reason why nothing can be sent.
     pub fn to(&self, thread: &Thread, lists: [f64; 3]) -> Result<Vec<(Plan, f64)>, String> {
         let terms: Vec<(Plan, f64)> = self.0.iter().filter_map(|term| term.price(thread, lists)).collect();
         match terms.iter().find(|(_, price)| *price <= 0.0) {
-            Some((plan, _)) => Err(format!("plan {plan} would be free: type a price above 0")),
+            Some((plan, _)) => Err(format!("plan {plan} would be free. Type a price above 0.")),
             None if terms.is_empty() && self.0.iter().all(|term| term.plan == TermChoice::Nothing) => {
                 Err("no plan is chosen".to_owned())
             }
@@ -152,7 +146,7 @@ impl Offer {
     }
 }
 
-/// Offers in few letters: `B $38.00 · C $61.00`.
+/// Returns an offer in short form: `B $38.00 · C $61.00`.
 pub fn in_words(offers: &[(Plan, f64)]) -> String {
     let one = |(plan, price): &(Plan, f64)| format!("{plan} ${}", grouped(*price, 2));
     offers.iter().map(one).collect::<Vec<_>>().join(" · ")
@@ -188,7 +182,11 @@ mod tests {
         offer.0[0].value = 90.0;
         offer.0[1] = Term { plan: TermChoice::Fixed(Plan::C), basis: Basis::Asked, value: 150.0 };
         assert_eq!(offer.to(&asking, LISTS), Ok(vec![(Plan::B, 28.8), (Plan::C, 30.02)]));
-        assert_eq!(offer.to(&silent, LISTS), Ok(vec![(Plan::B, 28.8)]), "a term without a start is left out");
+        assert_eq!(
+            offer.to(&silent, LISTS),
+            Ok(vec![(Plan::B, 28.8)]),
+            "a term without a reference price is left out"
+        );
         offer.0[2] = Term { plan: TermChoice::Fixed(Plan::C), ..UNUSED };
         assert!(offer.to(&asking, LISTS).is_err_and(|why| why.contains("plan C would be free")));
         assert!(Offer([UNUSED; 3]).to(&asking, LISTS).is_err_and(|why| why.contains("no plan")));

@@ -1,17 +1,17 @@
-//! The offer that is made: its terms, what they are worth, and what is noteworthy about them.
+//! The offer being edited: terms, value and notes.
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use super::estimate::{Money, per_seat};
 use super::model::Thread;
-use super::offer::{TermChoice, Offer, TERMS};
+use super::offer::{Offer, TERMS, TermChoice};
 use super::post::{self, summary};
 use super::{Inbox, list_prices};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{cents, dollars, grouped, percent};
 use novamind_session::identifiers::Plan;
 use novamind_tui::canvas::{Canvas, Click, rows_of};
@@ -20,13 +20,12 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;
 use novamind_tui::widgets::field::ONLY_NUMBERS;
 
-/// Width in which a line of the offer has all its columns.
+/// Width at which a line of the offer has all its columns.
 pub const WORTH: u16 = 59;
 
-/// More width for the column that compares with what the company asks.
+/// Additional width for the comparison with the asking price.
 const VERSUS: u16 = 10;
 
-/// The terms of the offer.
 pub struct OfferPane;
 
 impl Pane<Inbox> for OfferPane {
@@ -137,9 +136,9 @@ impl Pane<Inbox> for OfferPane {
     }
 }
 
-/// Heads of the columns that have room.
+/// Returns the column headings that fit.
 fn head(width: u16, batch: bool) -> String {
-    let mut worth = if batch { String::new() } else { format!(" {:>8} {:>9}", "a seat", "a month") };
+    let mut worth = if batch { String::new() } else { format!(" {:>8} {:>9}", "per seat", "per mo.") };
     if !batch && width >= WORTH {
         worth += &format!(" {:>9} {:>7}", "compute", "margin");
     }
@@ -149,7 +148,6 @@ fn head(width: u16, batch: bool) -> String {
     format!("plan   of     {:>8}{worth}", "value")
 }
 
-/// What is noteworthy about the offer, and the list prices.
 fn notes(inbox: &Inbox, width: u16, look: &Look<'_>) -> Vec<(String, Role)> {
     let planned = inbox.planned(look.company);
     let mut notes = match planned.first() {
@@ -167,8 +165,8 @@ fn notes(inbox: &Inbox, width: u16, look: &Look<'_>) -> Vec<(String, Role)> {
     notes
 }
 
-/// What there is to know of an offer, the most important first: what a quota does not cover, what they ask, and what the
-/// estimate of compute rests on; where its columns do not fit, the estimate itself.
+/// Returns the notes on an offer, most important first: quota shortfalls, the asking price, and the basis of
+/// the compute estimate, or the estimate itself if its columns do not fit.
 fn offer_notes(
     inbox: &Inbox,
     thread: &Thread,
@@ -193,10 +191,10 @@ fn offer_notes(
     if let Some((_, price)) = thread.asked() {
         let best = offers.iter().map(|(_, own)| own - price).fold(f64::INFINITY, f64::min);
         let sign = if best < 0.0 { "-" } else { "+" };
-        notes.push((format!("they ask {}; yours {sign}{}", cents(price), cents(best.abs())), Role::Text));
+        notes.push((format!("asking price {}; yours {sign}{}", cents(price), cents(best.abs())), Role::Text));
     }
     let Some((units, source)) = per_seat(&inbox.usage, look.company, &thread.group) else {
-        notes.push(("compute unknown: nobody in the group uses it yet".to_owned(), Role::Dim));
+        notes.push(("compute unknown: the group has no usage yet".to_owned(), Role::Dim));
         return notes;
     };
     if width >= WORTH {

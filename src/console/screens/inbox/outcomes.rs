@@ -1,12 +1,12 @@
-//! What became of new leads by the first offer they got and the week after it, as the query of the library counts it.
+//! Outcomes of new leads by week and first offer, from the library query.
 
 use ratatui::layout::Rect;
 
 use super::{Inbox, InboxPane};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::grouped;
 use novamind_database::{Rows, number_at, text_at};
 use novamind_tui::canvas::Canvas;
@@ -15,7 +15,7 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell, Column, Table};
 use novamind_worker::readings::Reading;
 
-/// What the screen asks the database for while they are shown.
+/// Readings that the screen needs while outcomes are shown.
 pub const READINGS: [Reading; 5] = [
     Reading::EnterpriseTurns,
     Reading::Companies,
@@ -24,14 +24,15 @@ pub const READINGS: [Reading; 5] = [
     Reading::FirstOffers,
 ];
 
-/// A row of the query: first offers of a week to a group, of the same plans, the first of them at prices of one band.
+/// A row of the query: first offers of one week to a group, with the same plans and a first price in the same
+/// band.
 #[derive(Debug, Clone, PartialEq)]
 struct FirstOffers {
     group: String,
     plan: String,
-    /// Whole dollars a seat and month, from this on.
+    /// Lower bound in whole $ per seat and month, inclusive.
     price_from: f64,
-    /// Below this.
+    /// Upper bound, exclusive.
     price_below: f64,
     week: f64,
     threads: f64,
@@ -41,16 +42,14 @@ struct FirstOffers {
     signed_percent: f64,
 }
 
-/// What the database answered, and the table of it.
 #[derive(Debug, Clone, Default)]
 pub struct Outcomes {
-    /// None until the answer is there.
+    /// `None` until the result arrives.
     found: Option<Vec<FirstOffers>>,
     table: Table,
 }
 
 impl Outcomes {
-    /// Takes the answer.
     pub fn take(&mut self, rows: &Rows) {
         let found: Vec<FirstOffers> = rows.rows.iter().map(|row| outcome_of(row)).collect();
         self.table.set(columns(), found.iter().map(row_of).collect());
@@ -78,7 +77,7 @@ fn outcome_of(row: &[novamind_database::Cell]) -> FirstOffers {
     }
 }
 
-/// The columns; those that a narrow window leaves out come last.
+/// Returns the columns; narrow windows drop the last ones.
 fn columns() -> Vec<Column> {
     let mut columns = vec![Column::numbers("week"), Column::words("group"), Column::words("plan")];
     let numbers = ["$/seat", "threads", "signed", "share", "lost", "waiting"];
@@ -102,7 +101,7 @@ fn row_of(own: &FirstOffers) -> Vec<Cell> {
     ]
 }
 
-/// The threads that a row counts, the oldest first.
+/// Selects the threads of a row, oldest first.
 fn statement(own: &FirstOffers) -> String {
     let FirstOffers { group, plan, price_from, price_below, week, .. } = own;
     format!(
@@ -120,18 +119,17 @@ fn statement(own: &FirstOffers) -> String {
 }
 
 impl Inbox {
-    /// The pane in the place of the list.
+    /// Returns the pane in place of the list.
     pub(super) fn first_pane(&self) -> InboxPane {
         if self.outcomes.is_some() { InboxPane::Outcomes } else { InboxPane::List }
     }
 
-    /// Shows the threads again.
     pub(super) fn close_outcomes(&mut self) {
         self.outcomes = None;
         self.focus = InboxPane::List;
     }
 
-    /// Opens or closes what became of first offers; none where the action is for something else.
+    /// Opens or closes the outcomes; returns `None` for unrelated actions.
     pub(super) fn turn_outcomes(&mut self, action: Action) -> Option<Vec<Effect>> {
         match (action, &self.outcomes) {
             (Action::InboxOutcomes, None) => {
@@ -140,9 +138,9 @@ impl Inbox {
                 return Some(vec![Effect::Read(Reading::FirstOffers)]);
             }
             (Action::InboxOutcomes | Action::OtherThreads, Some(_)) => self.close_outcomes(),
-            // What is marked has to be seen.
+            // Marking needs the visible list.
             (Action::Mark | Action::MarkAll, Some(_)) => {
-                return Some(vec![Effect::Complain("esc shows the threads: mark them there".to_owned())]);
+                return Some(vec![Effect::Complain("Close the outcomes (esc) to mark threads".to_owned())]);
             }
             _ => return None,
         }
@@ -150,7 +148,6 @@ impl Inbox {
     }
 }
 
-/// The table of outcomes.
 pub struct OutcomesPane;
 
 impl Pane<Inbox> for OutcomesPane {
@@ -178,7 +175,8 @@ impl Pane<Inbox> for OutcomesPane {
 
     fn figure(&self, inbox: &Inbox, _: &Look<'_>) -> Option<Figure> {
         let own = inbox.outcomes.as_ref()?.here()?;
-        let title = format!("threads of {} with a first offer of {} in week {}", own.group, own.plan, own.week);
+        let title =
+            format!("threads of {} with a first offer of {} in week {}", own.group, own.plan, own.week);
         Some(Figure { title, term: "offer", sql: Some(statement(own)), why: None })
     }
 
@@ -212,7 +210,9 @@ impl Pane<Inbox> for OutcomesPane {
             None => "reading …".to_owned(),
             Some([]) => {
                 let send = look.keys.label(Action::SendOffer).unwrap_or_default();
-                format!("No new lead has been sent an offer yet: {send} in the list of threads sends one.")
+                format!(
+                    "No new lead has been sent an offer yet. Send one with {send} in the list of threads."
+                )
             }
             Some(_) => return own.table.draw(canvas, seat.area, seat.focused, seat.number),
         };

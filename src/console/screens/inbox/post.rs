@@ -1,4 +1,4 @@
-//! From offers on screen to calls, and what their answers say.
+//! Sends offers and rejections, and handles the answers.
 
 use std::collections::BTreeSet;
 
@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 use super::model::{State, Thread};
 use super::offer::in_words;
 use super::{Inbox, list_prices};
-use crate::effect::Effect;
 use crate::context::Figure;
+use crate::effect::Effect;
 use novamind_base::notation::dollars;
 use novamind_session::identifiers::Plan;
 use novamind_tools::{Answer, DealResult, ToolId};
@@ -16,14 +16,13 @@ use novamind_tui::text::count;
 use novamind_worker::company::Company;
 use novamind_worker::request::Request;
 
-/// Tools of this screen.
 const SEND: ToolId = ToolId::SendEnterpriseDeal;
 const REJECT: ToolId = ToolId::RejectEnterpriseDeal;
 
-/// A thread and what it would be sent, or why nothing.
+/// A thread with its planned offer, or the reason why nothing is sent.
 pub(super) type Planned<'a> = (&'a Thread, Result<Vec<(Plan, f64)>, String>);
 
-/// The statement that shows a thread.
+/// Returns the query for the rows of a thread.
 pub(super) fn statement(thread: &Thread) -> Effect {
     Effect::EditSql(format!(
         "SELECT day, turn_number, sender, message_text, offer_json, seat_count, close_reason\n\
@@ -32,7 +31,7 @@ pub(super) fn statement(thread: &Thread) -> Effect {
     ))
 }
 
-/// A figure of a thread, made of its turns.
+/// Returns a figure of a thread, with a query for its turns.
 pub(super) fn figure(thread: &Thread, what: &str, term: &'static str) -> Figure {
     let sql = match statement(thread) {
         Effect::EditSql(sql) => Some(sql),
@@ -41,7 +40,7 @@ pub(super) fn figure(thread: &Thread, what: &str, term: &'static str) -> Figure 
     Figure { title: format!("{what} {}", thread.company()), term, sql, why: None }
 }
 
-/// Usage behind the estimated compute of an offer: what the companies of the group used on the last day.
+/// Returns the usage of the group on the last day, the basis of the compute estimate.
 pub(super) fn usage_figure(thread: &Thread) -> Figure {
     let group = &thread.group;
     Figure {
@@ -52,25 +51,27 @@ pub(super) fn usage_figure(thread: &Thread) -> Figure {
              FROM daily_usage u JOIN subscriptions s USING (customer_id) JOIN customers c USING (customer_id)\n\
              WHERE c.group_id = '{group}' AND s.status = 'subscribed'\n    \
              AND u.day = (SELECT max(day) FROM service_day) ORDER BY units DESC"
-        )), why: None }
+        )),
+        why: None,
+    }
 }
 
-/// Dollars a month that a company would pay, at most.
+/// Returns the maximum payment of an enterprise for an offer, $ per month.
 pub(super) fn monthly(thread: &Thread, offers: &[(Plan, f64)]) -> f64 {
     offers.iter().map(|(_, price)| price * thread.seats).fold(0.0, f64::max)
 }
 
 impl Inbox {
-    /// What every target would be sent.
+    /// Returns the planned offer of every recipient.
     pub(super) fn planned(&self, company: &Company) -> Vec<Planned<'_>> {
         let (offer, lists) = (self.offer(), list_prices(company));
         self.targets().into_iter().map(|thread| (thread, offer.to(thread, lists))).collect()
     }
 
-    /// Sends the offer on screen.
+    /// Sends the offer, after confirmation if necessary.
     pub(super) fn send(&self, company: &Company) -> Vec<Effect> {
         if !company.is_running() {
-            return vec![Effect::Complain("the run is over: offers go unanswered".to_owned())];
+            return vec![Effect::Complain("The run is over; offers get no answer".to_owned())];
         }
         let planned = self.planned(company);
         let sent: Vec<(&Thread, &Vec<(Plan, f64)>)> =
@@ -78,8 +79,8 @@ impl Inbox {
         let Some((first, offers)) = sent.first() else {
             let why = planned.first().map(|(_, offers)| offers.clone());
             let why = match why {
-                Some(Err(why)) => format!("nothing to send: {why}"),
-                _ => "no thread is selected: o shows the others".to_owned(),
+                Some(Err(why)) => format!("Nothing to send: {why}"),
+                _ => "No thread is selected. Press o for other threads.".to_owned(),
             };
             return vec![Effect::Complain(why)];
         };
@@ -93,12 +94,12 @@ impl Inbox {
             match first.state {
                 State::Waiting(_) => return vec![Effect::Request(Request::Call { tool: SEND, arguments })],
                 State::Theirs => format!(
-                    "{to} has not answered your last offer yet. This one, {}, replaces it and uses up another \
+                    "{to} has not answered your last offer yet. This one, {}, replaces it and uses another \
                      turn of its patience.",
                     in_words(offers)
                 ),
                 _ => format!(
-                    "This thread with {to} is closed. If it subscribes, {} opens a new thread; if the company declines, it leaves.",
+                    "This thread with {to} is closed. If it subscribes, {} opens a new thread; if the enterprise declines, it leaves.",
                     in_words(offers)
                 ),
             }
@@ -108,18 +109,18 @@ impl Inbox {
         vec![Effect::ConfirmCall { tool: SEND, arguments, text }]
     }
 
-    /// Asks whether to end the threads.
+    /// Asks for confirmation to end the threads.
     pub(super) fn reject(&self, company: &Company) -> Vec<Effect> {
         let open: Vec<&Thread> = self.targets().into_iter().filter(|thread| thread.state.is_open()).collect();
         if !company.is_running() || open.is_empty() {
-            return vec![Effect::Complain("no open thread to end here".to_owned())];
+            return vec![Effect::Complain("No open thread to end".to_owned())];
         }
         let leads = open.iter().filter(|thread| thread.kind == "new_lead");
         let (leads, seats) = leads.fold((0, 0.0), |(count, seats), thread| (count + 1, seats + thread.seats));
         let mut text = String::new();
         if leads > 0 {
             text += &format!(
-                "{} with {} {} lost for good: none ever asks again. ",
+                "{} with {} {} lost for good and will not ask again. ",
                 count(leads as f64, "new lead"),
                 count(seats, "seat"),
                 if leads == 1 { "is" } else { "are" },
@@ -128,7 +129,7 @@ impl Inbox {
         let others = open.len() - leads;
         if others > 0 {
             text += &format!(
-                "{others} subscriber{} on present terms; a new thread can be opened from the next day on.",
+                "{others} subscriber{} on the current terms; you can open a new thread from the next day.",
                 if others == 1 { " stays" } else { "s stay" }
             );
         }
@@ -137,7 +138,7 @@ impl Inbox {
         vec![Effect::ConfirmCall { tool: REJECT, arguments, text: text.trim_end().to_owned() }]
     }
 
-    /// Forgets drafts and marks of what was sent or ended.
+    /// Clears drafts and marks of the processed threads.
     pub(super) fn sent(&mut self, answer: &Answer) -> Vec<Effect> {
         let (offered, results) = match answer {
             Answer::SendEnterpriseDeal(answer) => (true, &answer.results),
@@ -158,12 +159,14 @@ impl Inbox {
         let what = if offered { "offered" } else { "ended" };
         match failed {
             0 => vec![Effect::Say(format!("{} {what}", done.len()))],
-            _ => vec![Effect::Complain(format!("{} {what}, {failed} refused: 0 shows why", done.len()))],
+            _ => vec![Effect::Complain(format!(
+                "{} {what}, {failed} rejected. Press 0 for the reasons.",
+                done.len()
+            ))],
         }
     }
 }
 
-/// A batch in a sentence.
 pub(super) fn summary(planned: &[Planned<'_>]) -> String {
     let sent = planned.iter().filter_map(|(thread, offers)| Some((*thread, offers.as_ref().ok()?)));
     let (mut companies, mut seats, mut worth) = (0, 0.0, 0.0);
@@ -176,7 +179,7 @@ pub(super) fn summary(planned: &[Planned<'_>]) -> String {
         0 => String::new(),
         skipped => format!(" {skipped} skipped."),
     };
-    let noun = if companies == 1 { "company" } else { "companies" };
+    let noun = if companies == 1 { "enterprise" } else { "enterprises" };
     format!(
         "{companies} {noun}, {}, at most {} a month if all agree.{skipped}",
         count(seats, "seat"),

@@ -1,4 +1,4 @@
-//! What every marked thread would get by the rule.
+//! Preview of a bulk offer: the offer to each marked thread.
 
 use ratatui::layout::Rect;
 
@@ -11,19 +11,16 @@ use novamind_base::notation::{cents, dollars};
 use novamind_tui::canvas::{Align, Canvas, rows_of};
 use novamind_tui::theme::Role;
 
-/// Columns of a company with its name, and of one without.
+/// Column width of an enterprise with its name, and without.
 const NAMED: u16 = 28;
 const NUMBERED: u16 = 14;
-/// Width from which on there is room for names.
 const WORTH_A_NAME: u16 = 68;
 
-/// What stands in its border.
 pub fn border(inbox: &Inbox, look: &Look<'_>) -> Border {
-    let title = format!("What {} would get", inbox.planned(look.company).len());
+    let title = format!("Preview for {}", inbox.planned(look.company).len());
     Border { title, note: "before → offer".to_owned(), ..Border::default() }
 }
 
-/// Draws a line for every thread.
 pub fn draw(inbox: &Inbox, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
     let (inside, planned) = (seat.area, inbox.planned(look.company));
     if seat.focused {
@@ -36,7 +33,7 @@ pub fn draw(inbox: &Inbox, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>)
 }
 
 fn draw_planned(canvas: &mut Canvas<'_>, row: Rect, (thread, offers): &Planned<'_>) {
-    // The number is what tells companies apart: a name is shown where there is room.
+    // The number identifies the enterprise; the name needs room.
     let named = row.width >= WORTH_A_NAME;
     let head = if named { thread.company() } else { format!("#{} {}", thread.customer, thread.group) };
     let width = if named { NAMED } else { NUMBERED }.min(row.width);
@@ -55,7 +52,7 @@ fn draw_planned(canvas: &mut Canvas<'_>, row: Rect, (thread, offers): &Planned<'
     let value = format!("{}/mo", dollars(monthly(thread, offers)));
     let room = rest.width.saturating_sub(value.len() as u16 + 1);
     let text = format!("{before} → {}", in_words(offers));
-    // Without the money a month rather than with half an offer.
+    // Drop the monthly amount before cutting the offer.
     if text.chars().count() as u16 <= room {
         canvas.aligned(rest, &value, Role::Strong, Align::Right);
     }

@@ -1,13 +1,13 @@
-//! Rules that are typed: what every waiting thread would be sent by them, and sending it once it was confirmed.
+//! Editor for rules, with a preview of their effect on every waiting thread. Sending needs confirmation.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::layout::{Constraint, Layout, Rect};
 use serde_json::Value;
 
-use super::{Inbox, InboxPane};
 use super::estimate::market_of;
-use crate::effect::Effect;
+use super::{Inbox, InboxPane};
 use crate::context::Look;
+use crate::effect::Effect;
 use crate::screens::panes::{Border, Seat, draw_pane};
 use novamind_base::notation::{cents, json_number};
 use novamind_rules::{AskingThread, Batch, Problem, RuledThread};
@@ -19,7 +19,8 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;
 use novamind_worker::company::Company;
 
-/// What is typed at first: whoever asks for a plan at its list price or more is accepted. Plans without a price are left out.
+/// Returns the initial rules: accept any request for a plan at its list price or more. Plans without a price
+/// are left out.
 fn first_rules(company: &Company) -> String {
     let rule = |plan: Plan| {
         let list = company.setting(ToolId::SetPrices, plan.id());
@@ -28,19 +29,18 @@ fn first_rules(company: &Company) -> String {
     Plan::ALL.into_iter().filter_map(rule).collect::<Vec<_>>().join("; ")
 }
 
-/// Rules that are typed, and what they do.
+/// Rules being edited, with their effect.
 #[derive(Debug, Clone)]
 pub struct Ruling {
-    /// The rules.
     pub field: Field,
-    /// Letters go into the field.
+    /// Whether keys type into the field.
     pub typing: bool,
-    /// What they do, or what is wrong with them.
+    /// Their effect, or the error in the text.
     outcome: Result<Batch, Problem>,
 }
 
 impl Ruling {
-    /// Starts with the rules of before, or with those that follow from the list prices.
+    /// Starts with the last rules, otherwise with rules from the list prices.
     pub fn new(before: Option<&str>, threads: &[AskingThread], company: &Company, inbox: &Inbox) -> Ruling {
         let mut ruling = Ruling {
             field: Field::of(before.map_or_else(|| first_rules(company), str::to_owned)),
@@ -51,20 +51,20 @@ impl Ruling {
         ruling
     }
 
-    /// Finds out anew what the rules do.
+    /// Applies the rules to the waiting threads again.
     pub fn judge(&mut self, threads: &[AskingThread], company: &Company, inbox: &Inbox) {
         self.outcome = novamind_rules::parse(self.field.text())
             .map(|rules| Batch::of(rules, threads.to_vec(), &market_of(company, &inbox.usage)));
     }
 
-    /// The threads that a rule means.
+    /// Returns the threads that match a rule.
     fn meant(&self) -> impl Iterator<Item = &RuledThread> {
         let all = self.outcome.as_ref().map_or(&[][..], |batch| batch.threads.as_slice());
         all.iter().filter(|ruled| ruled.rule.is_some())
     }
 }
 
-/// In a small window: the threads above, with what each would get, and the rules below.
+/// Draws the layout for small windows: the preview above the rules.
 pub fn arrange_small(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
     let [above, below] = Layout::vertical([Constraint::Percentage(45), Constraint::Min(0)]).areas(area);
     draw_pane(inbox, InboxPane::Thread, canvas, above, look);
@@ -72,11 +72,10 @@ pub fn arrange_small(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &
 }
 
 impl Inbox {
-    /// Opens the rules.
     pub(super) fn start_ruling(&mut self, company: &Company) -> Vec<Effect> {
         let threads = self.asking(company);
         if threads.is_empty() {
-            return vec![Effect::Complain("no thread waits for you: rules have nothing to answer".to_owned())];
+            return vec![Effect::Complain("No thread is waiting for an answer".to_owned())];
         }
         self.ruling = Some(Ruling::new(self.last_rules.as_deref(), &threads, company, self));
         self.focus = InboxPane::Offer;
@@ -84,7 +83,6 @@ impl Inbox {
         Vec::new()
     }
 
-    /// Takes a key that is typed into the rules.
     pub(super) fn type_rules(&mut self, company: &Company, edit: &mut dyn FnMut(&mut Field)) {
         let Some(mut ruling) = self.ruling.take() else { return };
         edit(&mut ruling.field);
@@ -92,11 +90,10 @@ impl Inbox {
         self.ruling = Some(ruling);
     }
 
-    /// A key of the rules.
     pub(super) fn rules_key(&mut self, key: &KeyEvent, company: &Company) {
         let ctrl = key.modifiers.contains(KeyModifiers::CONTROL);
         self.type_rules(company, &mut |field| match key.code {
-            // Empties them, as it empties the SQL editor.
+            // Clears the field, as in the SQL editor.
             KeyCode::Char('n') if ctrl => *field = Field::default(),
             _ => {
                 field.key(key);
@@ -104,11 +101,11 @@ impl Inbox {
         });
     }
 
-    /// Asks whether to send what the rules say.
+    /// Asks for confirmation to send the answers of the rules.
     pub(super) fn send_by_rules(&mut self, company: &Company) -> Vec<Effect> {
         let Some(ruling) = &self.ruling else { return Vec::new() };
         if !company.is_running() {
-            return vec![Effect::Complain("the run is over: offers go unanswered".to_owned())];
+            return vec![Effect::Complain("The run is over; offers get no answer".to_owned())];
         }
         let batch = match &ruling.outcome {
             Ok(batch) => batch,
@@ -118,20 +115,20 @@ impl Inbox {
         };
         let calls = batch.calls();
         if calls.is_empty() {
-            return vec![Effect::Complain("these rules send nothing".to_owned())];
+            return vec![Effect::Complain("These rules match no waiting thread".to_owned())];
         }
         let text = batch.summary().join("\n");
         self.last_rules = Some(ruling.field.text().to_owned());
         vec![Effect::ConfirmCalls { calls, text }]
     }
 
-    /// Whether rules were sent before.
+    /// Returns whether rules have been sent in this session.
     pub fn has_sent_rules(&self) -> bool {
         self.last_rules.is_some()
     }
 
-    /// What the rules that were sent last answer to those who wait now, call by call, and the same in words; none where they
-    /// send nothing.
+    /// Returns the tool calls of the last rules for the threads that wait now, and a summary; `None` if there
+    /// are none.
     pub fn answers_of_before(&self, company: &Company) -> Option<(Vec<(ToolId, Value)>, String)> {
         let rules = novamind_rules::parse(self.last_rules.as_deref()?).ok()?;
         let batch = Batch::of(rules, self.asking(company), &market_of(company, &self.usage));
@@ -139,14 +136,18 @@ impl Inbox {
         (!calls.is_empty()).then(|| (calls, batch.summary().join("\n")))
     }
 
-    /// The border of the rules.
     pub(super) fn rules_border(&self, look: &Look<'_>) -> Border {
         use crate::action::Action::{Discard, SendOffer};
-        let keys = format!("{} · ctrl-n empty the line · {}", look.hint(SendOffer), look.hint(Discard));
-        Border { title: "Rules".to_owned(), note: "first match answers".to_owned(), keys, ..Border::default() }
+        let keys = format!("{} · ctrl-n clear the line · {}", look.hint(SendOffer), look.hint(Discard));
+        Border {
+            title: "Rules".to_owned(),
+            note: "first match applies".to_owned(),
+            keys,
+            ..Border::default()
+        }
     }
 
-    /// Draws the field, and below it a line for each rule or what is wrong.
+    /// Draws the field, and a line for each rule or the error.
     pub(super) fn draw_rules(&self, ruling: &Ruling, canvas: &mut Canvas<'_>, seat: Seat) {
         let mut rows = rows_of(seat.area);
         let Some(first) = rows.next() else { return };
@@ -165,14 +166,18 @@ impl Inbox {
         }
     }
 
-    /// The border of the preview.
     pub(super) fn rules_preview_border(&self, ruling: &Ruling) -> Border {
-        let title = format!("What {} would get", ruling.meant().count());
+        let title = format!("Preview for {}", ruling.meant().count());
         Border { title, note: "rule: asked → sent".to_owned(), ..Border::default() }
     }
 
-    /// Draws a line for each thread that a rule means.
-    pub(super) fn draw_rules_preview(&self, ruling: &Ruling, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+    pub(super) fn draw_rules_preview(
+        &self,
+        ruling: &Ruling,
+        canvas: &mut Canvas<'_>,
+        seat: Seat,
+        look: &Look<'_>,
+    ) {
         let (inside, count) = (seat.area, ruling.meant().count());
         if seat.focused {
             canvas.page = inside.height.max(1);

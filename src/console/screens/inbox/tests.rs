@@ -6,15 +6,15 @@ use super::*;
 use crate::keys::Keys;
 use crate::screens::Screen;
 use crate::test_kit::{act, company, courted, drawn, shown, sweep};
-use novamind_session::identifiers::Plan;
 use novamind_database::{Cell as Datum, number_at};
 use novamind_record::trajectory::record::Via;
 use novamind_session::WaitingThread;
+use novamind_session::identifiers::Plan;
 use novamind_tools::{Answer, DealResult, DealResults, ToolId};
 use novamind_tui::chord::Chord;
 use novamind_worker::request::Request;
 
-/// A company with waiting threads: every third is a subscriber with a price of its own.
+/// Returns a company with waiting threads; every third enterprise is a subscriber with its own price.
 fn crowded_by(threads: u32) -> (Company, Rows, Rows) {
     let mut company = company();
     company.seen.day = 70;
@@ -82,7 +82,8 @@ fn crowded_screen_by(threads: u32) -> (Inbox, Company) {
     (screen, company)
 }
 
-/// Presses keys as the console does; a word in quotes is typed. Returns what the last key brought and their number.
+/// Presses keys as the console does; quoted words are typed. Returns the effects of the last key and the
+/// number of keys.
 fn press(screen: &mut Inbox, company: &Company, keys: &str) -> (Vec<Effect>, usize) {
     let known = Keys::shipped();
     let look = Look { company, keys: &known, page: 20 };
@@ -107,17 +108,16 @@ fn press(screen: &mut Inbox, company: &Company, keys: &str) -> (Vec<Effect>, usi
     (effects, count)
 }
 
-/// The deals of a call.
 fn deals(effects: &[Effect]) -> Vec<Value> {
     match effects {
         [Effect::ConfirmCall { arguments, .. } | Effect::Request(Request::Call { arguments, .. })] => {
             arguments["deals"].as_array().expect("deals").clone()
         }
-        other => panic!("no call: {other:?}"),
+        other => panic!("no tool call: {other:?}"),
     }
 }
 
-/// The company and the screen after a call that was answered for all.
+/// Returns the company and the screen after an answer to all deals.
 fn answered(screen: &mut Inbox, company: &mut Company, deals: &[Value]) {
     let customers: Vec<u32> = deals.iter().map(|deal| deal[0].as_u64().expect("a number") as u32).collect();
     company.seen.waiting.retain(|thread| !customers.contains(&thread.customer));
@@ -137,11 +137,11 @@ fn answered(screen: &mut Inbox, company: &mut Company, deals: &[Value]) {
 #[test]
 fn two_hundred_threads_are_worked_with_rules_in_under_forty_keys() {
     let (mut screen, mut company) = crowded_screen();
-    // Subscribers get what they ask, 3 % dearer; leads plan B at 90 % of the list, or C at 85 %.
+    // Offer subscribers 3 % more than they ask, and leads plan B at 90 % of the list price or C at 85 %.
     let (effects, mut keys) = press(&mut screen, &company, "/ 'reten' enter a t e '103' ctrl-s");
     let sent = deals(&effects);
     assert_eq!((sent.len(), &sent[0][1]), (66, &json!([["B", 20.6]])));
-    assert!(matches!(&effects[0], Effect::ConfirmCall { text, .. } if text.starts_with("66 companies, ")));
+    assert!(matches!(&effects[0], Effect::ConfirmCall { text, .. } if text.starts_with("66 enterprises, ")));
     answered(&mut screen, &mut company, &sent);
     keys += 1;
     assert_eq!(screen.marked.len(), 0);
@@ -170,20 +170,31 @@ fn rules_answer_every_thread_after_one_confirmation() {
     let [Effect::ConfirmCalls { calls, text }] = &effects[..] else { panic!("{effects:?}") };
     let sizes: Vec<(ToolId, usize)> =
         calls.iter().map(|(tool, call)| (*tool, call["deals"].as_array().expect("deals").len())).collect();
-    // Leads of E1 are those whose number is a multiple of three: all of them have asked.
+    // Leads of E1 are those with a number divisible by three; all of them have asked.
     assert_eq!(sizes, [(ToolId::SendEnterpriseDeal, 66), (ToolId::RejectEnterpriseDeal, 6)]);
     assert!(text.contains("128 unanswered"), "{text}");
-    assert_eq!(screen.answers_of_before(&company).as_ref(), Some(&(calls.clone(), text.clone())), "they are kept");
+    assert_eq!(
+        screen.answers_of_before(&company).as_ref(),
+        Some(&(calls.clone(), text.clone())),
+        "the rules are kept"
+    );
     press(&mut screen, &company, "esc R");
     for (width, height) in [(60, 13), (80, 21), (120, 37), (200, 57)] {
         let text = drawn(&screen, &company, width, height);
-        assert!(text.contains("seats<60"), "rules that were sent come back: {width}x{height} in\n{text}");
-        assert!(text.contains("$20.00 → B $20.00"), "what a company gets: {width}x{height} in\n{text}");
+        assert!(
+            text.contains("seats<60"),
+            "rules that were sent are shown again: {width}x{height} in\n{text}"
+        );
+        assert!(text.contains("$20.00 → B $20.00"), "offer to an enterprise: {width}x{height} in\n{text}");
     }
     press(&mut screen, &company, "tab");
-    assert_eq!((screen.focus, screen.scopes()[0].is_text()), (InboxPane::Thread, false), "tab leads to the preview");
+    assert_eq!(
+        (screen.focus, screen.scopes()[0].is_text()),
+        (InboxPane::Thread, false),
+        "tab focuses the preview"
+    );
     press(&mut screen, &company, "R");
-    assert_eq!((screen.focus, screen.scopes()[0].is_text()), (InboxPane::Offer, true), "R leads back to the rules");
+    assert_eq!((screen.focus, screen.scopes()[0].is_text()), (InboxPane::Offer, true), "R focuses the rules");
     let (effects, _) = press(&mut screen, &company, "ctrl-n 'ofer' ctrl-s");
     assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("did you mean offer")));
     sweep(&mut screen, &company);
@@ -218,7 +229,7 @@ fn a_draft_survives_and_belongs_to_its_thread() {
     assert_eq!(screen.offer().0[0].value, 95.0);
     assert!(screen.holds_unsent_text());
     press(&mut screen, &company, "e '7' esc");
-    assert_eq!(screen.offer().0[0].value, 95.0, "what was cancelled is forgotten");
+    assert_eq!(screen.offer().0[0].value, 95.0, "cancelled input is discarded");
     let (effects, _) = press(&mut screen, &company, "enter 'x'");
     assert!(matches!(&effects[..], [Effect::Complain(_)]) && screen.typing.is_some());
 }
@@ -242,7 +253,7 @@ fn pictures_hold_list_thread_offer_and_preview() {
     for (width, height) in [(80, 21), (120, 37), (200, 57)] {
         let text = drawn(&screen, &company, width, height);
         for words in
-            ["200 waiting for you", "left", "company", "no.", "new lead", "Your offer", "a seat"]
+            ["200 waiting for you", "left", "enterprise", "no.", "new lead", "Your offer", "per seat"]
         {
             assert!(text.contains(words), "{words} at {width}x{height} in\n{text}");
         }
@@ -250,7 +261,7 @@ fn pictures_hold_list_thread_offer_and_preview() {
     press(&mut screen, &company, "a");
     for (width, height) in [(80, 21), (120, 37), (200, 57)] {
         let text = drawn(&screen, &company, width, height);
-        for words in ["Bulk offer for 200", "What 200 would get", "200 marked", "→ B $32.00", "200 companies"]
+        for words in ["Bulk offer for 200", "Preview for 200", "200 marked", "→ B $32.00", "200 enterprises"]
         {
             assert!(text.contains(words), "{words} at {width}x{height} in\n{text}");
         }
@@ -259,7 +270,8 @@ fn pictures_hold_list_thread_offer_and_preview() {
     screen.focus_on(InboxPane::List);
     press(&mut screen, &company, "a / '1003' enter");
     let text = drawn(&screen, &company, 120, 37);
-    for words in ["#1003", "offered B $30.00", "At $20.00 for plan B", "formal", "they ask $20.00", "theirs"]
+    for words in
+        ["#1003", "offered B $30.00", "At $20.00 for plan B", "formal", "asking price $20.00", "theirs"]
     {
         assert!(text.contains(words), "{words} in\n{text}");
     }
@@ -273,11 +285,14 @@ fn without_threads_it_says_what_brings_companies() {
     for width in [80, 120, 200] {
         let text = drawn(&screen, &company, width, 37);
         assert!(
-            text.contains("No company has asked for an offer yet") && text.contains("set_targeted_ad_spend"),
+            text.contains("No enterprise has asked for an offer yet")
+                && text.contains("set_targeted_ad_spend"),
             "{text}"
         );
     }
-    for action in [Action::SendOffer, Action::RejectOffer, Action::InboxRules].into_iter().chain(NEEDS_A_THREAD) {
+    for action in
+        [Action::SendOffer, Action::RejectOffer, Action::InboxRules].into_iter().chain(NEEDS_A_THREAD)
+    {
         assert!(matches!(&act(&mut screen, action, &company)[..], [Effect::Complain(_)]), "{action:?}");
     }
     sweep(&mut screen, &company);
@@ -294,7 +309,9 @@ fn a_real_company_is_answered_and_found_again() {
     assert!(screen.letters.firm(first.customer).is_some_and(|firm| firm.group == first.group));
     let [Effect::EditSql(sql)] = &act(&mut screen, Action::InboxSql, &before)[..] else { panic!("no query") };
     assert_eq!(session.query(sql).expect("rows").rows.len(), first.turns.len());
-    let [Effect::Request(Request::Call { tool, arguments })] = &act(&mut screen, Action::SendOffer, &before)[..] else {
+    let [Effect::Request(Request::Call { tool, arguments })] =
+        &act(&mut screen, Action::SendOffer, &before)[..]
+    else {
         panic!("no call")
     };
     session.call(tool, arguments, Via::Form).expect("sent");
@@ -307,7 +324,7 @@ fn a_real_company_is_answered_and_found_again() {
     assert_eq!(thread.offered(), [(Plan::B, 32.0)]);
     assert_eq!(thread.seats, first.seats);
     let again = act(&mut screen, Action::SendOffer, &after);
-    assert!(matches!(&again[..], [Effect::ConfirmCall { text, .. }] if text.contains("another turn")));
+    assert!(matches!(&again[..], [Effect::ConfirmCall { text, .. }] if text.contains("uses another turn")));
 }
 
 #[test]
@@ -340,7 +357,8 @@ fn an_offer_shows_what_it_earns_after_compute_and_where_the_figures_come_from() 
     assert_eq!(session.query(&turns).expect("rows").rows.len(), thread.turns.len());
 }
 
-/// A run whose leads were sent first offers of several plans and prices, some of them twice, over three weeks.
+/// Returns a run whose leads got first offers with several plans and prices over three weeks, some of them
+/// twice.
 fn offered() -> novamind_session::Session {
     let mut session = courted();
     for week in 0..3 {
@@ -405,7 +423,7 @@ fn outcomes_of_first_offers_are_those_that_the_turns_and_subscriptions_tell() {
         assert_eq!(number(&row[7]), count("AND deal.yes IS NULL AND status <> 'lead'"), "{row:?}");
         assert_eq!(number(&row[8]), count("AND deal.yes IS NULL AND status = 'lead'"), "{row:?}");
         threads += all;
-        // The rows behind it are its threads.
+        // The query for the row returns its threads.
         OutcomesPane.table_mut(&mut screen).expect("a table").select(at);
         let sql = screen.figure(&look).and_then(|figure| figure.sql).expect("rows");
         let behind = session.query(&sql).expect("rows");
@@ -415,10 +433,14 @@ fn outcomes_of_first_offers_are_those_that_the_turns_and_subscriptions_tell() {
     let first = "SELECT count(DISTINCT thread_id) FROM enterprise_turns WHERE sender = 'agent' AND thread_type = 'new_lead'";
     assert_eq!(threads, number_at(&session.query(first).expect("a count").rows[0], 0));
     let led = act(&mut screen, Action::Open, &company);
-    assert!(matches!(&led[..], [Effect::RunSql(sql)] if sql == include_str!("../../../../assets/queries/first-offers.sql")));
+    assert!(
+        matches!(&led[..], [Effect::RunSql(sql)] if sql == include_str!("../../../../assets/queries/first-offers.sql"))
+    );
     for (width, height) in [(60, 13), (80, 21), (120, 37), (200, 57)] {
         let text = drawn(&screen, &company, width, height);
-        for words in ["y first offer and week", "$/seat", "threads", "signed", "share", &cells[0][6], "Your offer"] {
+        for words in
+            ["y first offer and week", "$/seat", "threads", "signed", "share", &cells[0][6], "Your offer"]
+        {
             assert!(text.contains(words), "{words} at {width}x{height} in\n{text}");
         }
     }
@@ -432,7 +454,7 @@ fn outcomes_stand_in_the_place_of_the_list_until_they_are_closed() {
     assert_eq!((screen.focus, Screen::depth(&screen)), (InboxPane::Outcomes, 1));
     screen.focus_on(InboxPane::Offer);
     press(&mut screen, &company, "esc");
-    assert_eq!(screen.focus, InboxPane::Outcomes, "the offer leads back to what it was looked at beside");
+    assert_eq!(screen.focus, InboxPane::Outcomes, "esc returns from the offer to the outcomes");
     for marks in ["space", "a"] {
         assert!(matches!(&press(&mut screen, &company, marks).0[..], [Effect::Complain(_)]));
     }
@@ -442,7 +464,11 @@ fn outcomes_stand_in_the_place_of_the_list_until_they_are_closed() {
         assert_eq!((screen.focus, Screen::depth(&screen)), (InboxPane::List, 0), "{closes}");
         press(&mut screen, &company, "O");
     }
-    screen.take(Reading::FirstOffers, &Rows::default(), &Look { company: &company, keys: &Keys::shipped(), page: 20 });
+    screen.take(
+        Reading::FirstOffers,
+        &Rows::default(),
+        &Look { company: &company, keys: &Keys::shipped(), page: 20 },
+    );
     assert!(drawn(&screen, &company, 60, 13).contains("No new lead has been sent an offer yet"));
     screen.show(7, &company);
     assert_eq!(screen.focus, InboxPane::List);
@@ -454,8 +480,9 @@ fn thousands_of_threads_are_marked_sent_and_followed_by_the_next_one() {
     press(&mut screen, &company, "a");
     assert_eq!(screen.marked.len(), 3_500);
     press(&mut screen, &company, "a");
-    // The first half is sent while its first thread is selected: the list goes on with the second half.
-    let (effects, _) = press(&mut screen, &company, "R ctrl-n 'offer\u{a0}where\u{a0}customer<2750:\u{a0}B\u{a0}85' ctrl-s");
+    // The first half is sent while its first thread is selected; the list then shows the second half.
+    let (effects, _) =
+        press(&mut screen, &company, "R ctrl-n 'offer\u{a0}where\u{a0}customer<2750:\u{a0}B\u{a0}85' ctrl-s");
     let [Effect::ConfirmCalls { calls, .. }] = &effects[..] else { panic!("{effects:?}") };
     let sent = calls[0].1["deals"].as_array().expect("deals").clone();
     assert_eq!(sent.len(), 1_749);

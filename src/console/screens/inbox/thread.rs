@@ -1,4 +1,4 @@
-//! The thread that is selected, or what every marked one would get.
+//! The selected thread, or the preview of a bulk offer.
 
 use ratatui::layout::Rect;
 
@@ -6,15 +6,14 @@ use super::model::{State, Thread, Turn};
 use super::offer::in_words;
 use super::{Inbox, InboxPane, post, preview};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat, draw_framed};
-use crate::context::{Figure, Look};
 use novamind_base::notation::cents;
 use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::text::{count, wrapped};
 use novamind_tui::theme::Role;
 
-/// The thread, or the preview of a rule.
 pub struct ThreadPane;
 
 impl Pane<Inbox> for ThreadPane {
@@ -34,7 +33,7 @@ impl Pane<Inbox> for ThreadPane {
     }
 
     fn act(&self, inbox: &mut Inbox, action: Action, look: &Look<'_>) -> Vec<Effect> {
-        // A thread is read from its end, a preview from its start.
+        // A thread opens at its end, a preview at its start.
         let back = if inbox.marked.is_empty() && inbox.ruling.is_none() { Action::Up } else { Action::Down };
         inbox.scroll = match action {
             Action::Open => {
@@ -74,12 +73,11 @@ impl Pane<Inbox> for ThreadPane {
     }
 }
 
-/// Draws the thread beside the preview of a rule.
+/// Draws the thread next to the preview.
 pub fn draw_beside(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
     draw_framed(&Conversation, inbox, canvas, Seat { area, focused: false, number: 0 }, look);
 }
 
-/// The words of a thread.
 struct Conversation;
 
 impl Pane<Inbox> for Conversation {
@@ -92,7 +90,7 @@ impl Pane<Inbox> for Conversation {
             State::Waiting(days) => format!("{days} days left"),
             state => state.words().to_owned(),
         };
-        // In a small window the list beside it says how many seats; the days are what presses.
+        // In small windows the list shows the seats, and the remaining days matter most.
         let note = match area.width {
             ..72 => state,
             _ => format!("{} · {state}", count(thread.seats, "seat")),
@@ -108,7 +106,7 @@ impl Pane<Inbox> for Conversation {
             canvas.page = inside.height.max(1);
         }
         let lines = conversation(inbox, thread, inside.width as usize);
-        // The newest words are what an answer is about.
+        // Show the newest message.
         let last = lines.len().saturating_sub(inside.height as usize);
         let back = if inbox.marked.is_empty() { inbox.scroll as usize } else { 0 };
         for (row, (line, role)) in rows_of(inside).zip(lines.iter().skip(last.saturating_sub(back))) {
@@ -136,9 +134,9 @@ fn conversation(inbox: &Inbox, thread: &Thread, width: usize) -> Vec<(String, Ro
         lines.extend(wrapped(&terms, width).into_iter().map(|line| (line, Role::Strong)));
         lines.push((String::new(), Role::Text));
     }
-    // Of many threads only the newest turns are read.
+    // Of long threads only the newest turns are read.
     if thread.turns.first().is_none_or(|turn| turn.number > 0) {
-        lines.push(("earlier turns: SQL".to_owned(), Role::Dim));
+        lines.push(("earlier turns: see SQL".to_owned(), Role::Dim));
     }
     for turn in &thread.turns {
         let (who, role) = match turn.sender.as_str() {

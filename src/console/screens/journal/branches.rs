@@ -1,16 +1,16 @@
-//! The tree of branches in which the run stands: where each left, its first change, where it stands now.
+//! Tree of related runs: where each branched off, its first change and its state.
 
 use ratatui::layout::Rect;
 
 use super::{Journal, JournalPane};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::short_dollars;
+use novamind_insight::Kin;
 use novamind_report::first_change_in_words;
 use novamind_report::whatif::kin_line;
-use novamind_insight::Kin;
 use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
@@ -18,19 +18,17 @@ use novamind_tui::widgets::{Cell, Column, Table};
 use novamind_worker::company::Company;
 use novamind_worker::questions::RelatedRunsQuestion;
 
-/// The tree.
 pub struct BranchesPane;
 
-/// Rows that the pane wants around the runs: its border and the head.
+/// Rows of the pane besides the runs: border and headings.
 pub const AROUND: u16 = 3;
-/// Height from which the selected run is told in full below the table.
+/// Height from which the selected run is described below the table.
 const TOLD_FROM: u16 = 7;
 
-/// A table of runs without any.
 pub fn table() -> Table {
     Table::new(vec![
         Column::words("run"),
-        Column::numbers("left in").at_least(7),
+        Column::numbers("branch at").at_least(7),
         Column::words("first change").at_least(12),
         Column::numbers("day"),
         Column::numbers("cash"),
@@ -38,7 +36,7 @@ pub fn table() -> Table {
     ])
 }
 
-/// The rows of a tree; that of the run with this id is marked.
+/// Returns the rows of a tree, with the current run marked.
 pub fn rows(tree: &[Kin], own: &str) -> Vec<Vec<Cell>> {
     tree.iter().map(|kin| row(kin, own)).collect()
 }
@@ -66,12 +64,12 @@ fn row(kin: &Kin, own: &str) -> Vec<Cell> {
 }
 
 impl Journal {
-    /// Whether there is a tree to show: the run has branches or is one.
+    /// Returns whether the run is a branch or has branches.
     pub(super) fn has_tree(&self) -> bool {
         self.tree.len() > 1
     }
 
-    /// Asks for the tree, unless it is being read, or cannot have changed.
+    /// Requests the tree, unless it is being read or cannot have changed.
     pub(super) fn ask_tree(&mut self, company: &Company) -> Vec<Effect> {
         let is_known = company.replayed && self.is_tree_read;
         if company.study.is_some() || company.folder.is_none() || self.asked.is_waiting() || is_known {
@@ -80,7 +78,6 @@ impl Journal {
         vec![Effect::Ask(self.asked.ask(RelatedRunsQuestion))]
     }
 
-    /// Takes the tree that was read.
     pub(super) fn take_tree(&mut self, tree: Vec<Kin>, company: &Company) {
         let run = &company.seen.run;
         let is_first = self.tree.is_empty();
@@ -94,8 +91,8 @@ impl Journal {
         }
     }
 
-    /// What stands beside the title of the entries: how they are filtered, or of how many runs the tree is and the key that
-    /// leads to it.
+    /// Returns the note next to the title of the entries: the filter, or the number of runs in the tree with
+    /// its key.
     pub(super) fn note(&self, look: &Look<'_>) -> String {
         match (self.table.note(), self.has_tree()) {
             (note, false) => note,

@@ -1,40 +1,40 @@
-//! The journal as lines to walk: weeks with the newest first, in each what was done in its order.
+//! Lines of the journal: weeks, newest first, with their actions in order.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 
-use novamind_worker::company::Company;
 use novamind_base::notation::{compact, dollars, grouped, short_dollars, signed_dollars};
-use novamind_report::deals::deals_in_words;
-use novamind_report::parameters::{entry_in_words, since_in_words};
 use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::Reversal;
+use novamind_report::deals::deals_in_words;
+use novamind_report::parameters::{entry_in_words, since_in_words};
 use novamind_session::{CompanyNames, JournalEntry, ScoredForecast, naively, undone_calls};
 use novamind_tools::{Forecast, Kind, Spec};
 use novamind_tui::text::number;
 use novamind_tui::theme::Role;
+use novamind_worker::company::Company;
 
-/// A line.
+/// A line of the journal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JournalLine {
-    /// Day.
+    /// Day of the run.
     pub day: u32,
-    /// What happened, in one line.
+    /// Summary in one line.
     pub text: String,
-    /// Meaning.
+    /// Role of the text.
     pub role: Role,
-    /// Title of the whole entry.
+    /// Title of the complete entry.
     pub title: String,
-    /// The whole entry.
+    /// The complete entry.
     pub whole: String,
-    /// What explains it.
+    /// Glossary term.
     pub term: &'static str,
-    /// The question for the rows behind it.
+    /// Query for the rows behind it.
     pub sql: Option<String>,
 }
 
-/// What was filed before a week.
+/// The decisions filed before a week.
 struct FiledWeek<'a> {
     day: u32,
     rationale: &'a str,
@@ -42,7 +42,7 @@ struct FiledWeek<'a> {
     filled_naively: &'a [bool],
 }
 
-/// A week: what was done before it, what was filed, how it went.
+/// A week: actions before it, forecasts, result.
 #[derive(Default)]
 struct Group<'a> {
     calls: Vec<JournalLine>,
@@ -50,7 +50,7 @@ struct Group<'a> {
     figures: Option<&'a WeekFigures>,
 }
 
-/// All lines.
+/// Returns all lines.
 pub fn lines(company: &Company) -> Vec<JournalLine> {
     let mut groups = vec![Group::default()];
     let mut settings = KnownSettings::default();
@@ -58,7 +58,9 @@ pub fn lines(company: &Company) -> Vec<JournalLine> {
     for entry in &company.journal {
         let Some(last) = groups.last_mut() else { continue };
         match entry {
-            JournalEntry::Call { .. } => last.calls.extend(of_call(entry, &mut settings, &undone, &company.names)),
+            JournalEntry::Call { .. } => {
+                last.calls.extend(of_call(entry, &mut settings, &undone, &company.names))
+            }
             JournalEntry::Parameter { day, key, old, new, from_day, .. } => {
                 last.calls.push(of_parameter(*day, key, [old, new], *from_day));
             }
@@ -91,7 +93,7 @@ impl Group<'_> {
         let mut lines = vec![line(day, head.clone(), Role::Strong)];
         if let Some(week) = self.figures {
             lines[0].term = "cash-change";
-            // What is bought on a decision day is paid before the week that follows it.
+            // Purchases of a decision day are paid before the following week.
             lines[0].sql = Some(format!(
                 "SELECT category, sum(amount) AS amount FROM ledger\nWHERE category <> 'initial_funding' AND CASE\n    \
                  WHEN category IN ('market_research', 'group_research', 'research_project') THEN day >= {from} AND day < {to}\n    \
@@ -105,7 +107,7 @@ impl Group<'_> {
             let why = line(filed.day, format!("  why  {}", words.join(" ")), Role::Text);
             lines.push(JournalLine { term: "rationale", ..why });
             if !filed.forecasts.is_empty() {
-                let said = line(filed.day, format!("  said {}", filed.in_a_line(company)), Role::Dim);
+                let said = line(filed.day, format!("  filed {}", filed.in_a_line(company)), Role::Dim);
                 let sql = format!("SELECT * FROM predictions WHERE submit_day = {}", filed.day);
                 lines.push(JournalLine { term: "forecast", sql: Some(sql), ..said });
             }
@@ -114,7 +116,7 @@ impl Group<'_> {
         lines
     }
 
-    /// The line above a week; none for a week without anything in a run that is over.
+    /// Returns the heading of a week; `None` for an empty week of a finished run.
     fn head(&self, company: &Company) -> Option<String> {
         match self.figures {
             Some(week) => {
@@ -139,7 +141,6 @@ impl Group<'_> {
         }
     }
 
-    /// The whole week to read.
     fn whole(&self, company: &Company, head: &str) -> String {
         let mut parts = vec![head.to_owned()];
         if let Some(filed) = &self.filed {
@@ -148,11 +149,11 @@ impl Group<'_> {
         }
         let calls: Vec<&str> = self.calls.iter().map(|line| line.text.as_str()).collect();
         if !calls.is_empty() {
-            parts.push(format!("Done before it:\n{}", calls.join("\n")));
+            parts.push(format!("Actions before it:\n{}", calls.join("\n")));
         }
         if let Some(week) = self.figures {
             parts.push(format!(
-                "How it went:\n  cash {} ({})\n  subscribers {} (new {}, cancelled {})\n  seats {}\n  payments {} · running costs {}",
+                "Result:\n  cash {} ({})\n  subscribers {} (new {}, cancelled {})\n  seats {}\n  payments {} · running costs {}",
                 dollars(week.cash),
                 signed_dollars(week.cash_change),
                 grouped(f64::from(week.individual_subscribers), 0),
@@ -208,7 +209,7 @@ impl FiledWeek<'_> {
     }
 }
 
-/// A call as a line; a call that was taken back is shown as such, and so is the call that did it.
+/// Returns a tool call as a line. Undone calls are marked, as are undo and redo.
 fn of_call(
     entry: &JournalEntry,
     settings: &mut KnownSettings,
@@ -241,20 +242,20 @@ fn of_call(
     })
 }
 
-/// A parameter that was set, as a line.
+/// Returns a parameter change as a line.
 fn of_parameter(day: u32, key: &str, [old, new]: [&Value; 2], from_day: Option<u32>) -> JournalLine {
     JournalLine {
         day,
         text: format!("  {}", entry_in_words(key, [old, new], from_day)),
         role: Role::Text,
         title: format!("{key} · day {day}"),
-        whole: format!("set {key}{}\n\nbefore: {old}\nthen: {new}", since_in_words(from_day)),
+        whole: format!("set {key}{}\n\nbefore: {old}\nafter: {new}", since_in_words(from_day)),
         term: "",
         sql: None,
     }
 }
 
-/// Where the database keeps what a call has set.
+/// Returns the query for the stored settings of a call.
 fn kept_in(spec: &Spec, day: u32) -> Option<String> {
     let table = spec.writes.iter().find(|table| table.starts_with("config_"))?;
     let tool = match *table {
@@ -264,12 +265,12 @@ fn kept_in(spec: &Spec, day: u32) -> Option<String> {
     Some(format!("SELECT * FROM {table} WHERE day = {day}{tool}"))
 }
 
-/// What earlier calls have set, to tell old from new.
+/// Settings of earlier calls, to show old values.
 #[derive(Default)]
 struct KnownSettings(BTreeMap<String, f64>);
 
 impl KnownSettings {
-    /// A call in words: what it changed as old → new; whatever was never set before as it is.
+    /// Describes a call: changes as old → new, and values that were not set before.
     fn change(&mut self, spec: &Spec, args: &Value) -> String {
         let mut leaves = Vec::new();
         collect(args, "", &mut leaves);
@@ -286,7 +287,7 @@ impl KnownSettings {
                 None => changes.push(format!("{path} {}", plain(*value))),
             }
         }
-        // A map is replaced as a whole: what it does not name any more is set to nothing.
+        // A map is replaced completely; entries that it no longer contains are removed.
         let maps = args.as_object().into_iter().flatten().filter(|(_, value)| value.is_object());
         for (name, _) in maps {
             let start = key(&format!("{name} "));
@@ -299,11 +300,11 @@ impl KnownSettings {
                 changes.push(format!("{short} {} → –", plain(old)));
             }
         }
-        if changes.is_empty() { "as before".to_owned() } else { changes.join(" · ") }
+        if changes.is_empty() { "unchanged".to_owned() } else { changes.join(" · ") }
     }
 }
 
-/// Numbers of a call with their paths: `targeted_spend linkedin E1`.
+/// Returns the numbers of a call with their paths: `targeted_spend linkedin E1`.
 fn collect(value: &Value, path: &str, leaves: &mut Vec<(String, f64)>) {
     match value {
         Value::Object(fields) => {
@@ -317,7 +318,7 @@ fn collect(value: &Value, path: &str, leaves: &mut Vec<(String, f64)>) {
     }
 }
 
-/// Arguments of a call in few characters: `A 16 B 34`, `search_ads(S3 40)`.
+/// Describes arguments in short form: `A 16 B 34`, `search_ads(S3 40)`.
 pub fn in_words(value: &Value) -> String {
     match value {
         Value::Null => "–".to_owned(),
@@ -325,7 +326,7 @@ pub fn in_words(value: &Value) -> String {
         Value::Number(own) => own.as_f64().map_or_else(|| own.to_string(), plain),
         Value::String(text) => text.split_whitespace().collect::<Vec<_>>().join(" "),
         Value::Array(values) => {
-            // Whole numbers in a list are numbers of customers and threads.
+            // Whole numbers in a list are customer and thread numbers.
             let item = |value: &Value| if value.is_u64() { value.to_string() } else { in_words(value) };
             format!("[{}]", values.iter().map(item).collect::<Vec<_>>().join(" "))
         }
@@ -339,7 +340,7 @@ pub fn in_words(value: &Value) -> String {
     }
 }
 
-/// A number with the digits that matter; the whole entry has them all.
+/// Returns a rounded number; the complete entry has all digits.
 fn plain(value: f64) -> String {
     let short = if value.abs() >= 0.01 { (value * 1e4).round() / 1e4 } else { value };
     if short.fract() == 0.0 { number(short) } else { short.to_string() }
@@ -372,7 +373,7 @@ mod tests {
         };
         assert_eq!(said("set_prices", json!({"A": 12})), "A 12");
         assert_eq!(said("set_prices", json!({"A": 14, "B": 25})), "A 12 → 14 · B 25");
-        assert_eq!(said("set_prices", json!({"A": 14})), "as before");
+        assert_eq!(said("set_prices", json!({"A": 14})), "unchanged");
         let ads = "set_targeted_ad_spend";
         let first = said(ads, json!({"targeted_spend": {"linkedin": {"E1": 200, "E2": 50}}}));
         assert_eq!(first, "targeted_spend(linkedin(E1 200 E2 50))");

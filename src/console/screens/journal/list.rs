@@ -1,16 +1,15 @@
-//! What was done, the newest week first.
+//! Journal entries, newest week first.
 
 use ratatui::layout::Rect;
 
 use super::Journal;
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
 
-/// The entries.
 pub struct EntriesPane;
 
 impl Pane<Journal> for EntriesPane {

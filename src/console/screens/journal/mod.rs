@@ -1,4 +1,4 @@
-//! What was done and why, how the forecasts turned out, and the notes of the run.
+//! Journal: actions with rationales, forecast results, and notes.
 
 mod branches;
 pub mod entries;
@@ -11,10 +11,10 @@ mod tests;
 use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
-use super::panes::{Pane, Paned, draw_pane};
-use crate::context::{Figure, Look};
 use super::ScreenState;
+use super::panes::{Pane, Paned, draw_pane};
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use novamind_insight::Kin;
 use novamind_tui::canvas::Canvas;
@@ -24,34 +24,31 @@ use novamind_worker::asking::Pending;
 use novamind_worker::questions::RelatedRunsQuestion;
 use novamind_worker::request::Request;
 
-/// Its panes, in the order of the tab key.
+/// Panes in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, VariantArray)]
 pub enum JournalPane {
-    /// What was done.
+    /// Journal entries.
     List,
-    /// Notes to oneself.
+    /// Notes of the run.
     Notes,
-    /// How forecasts turned out.
+    /// Forecast results.
     Scores,
-    /// The tree of branches, where there is one.
+    /// Tree of related runs, if there is one.
     Branches,
 }
 
-/// The screen.
+/// The journal screen.
 pub struct Journal {
     focus: JournalPane,
     table: Table,
-    /// Title and text of the whole entry behind every row.
+    /// Title and text of the complete entry of each row.
     wholes: Vec<(String, String)>,
-    /// What every row is about.
     figures: Vec<Figure>,
-    /// The selected horizon of the forecasts.
     horizon: usize,
     notes: Editor,
-    /// The notes as they are kept.
     kept: String,
     editing: bool,
-    /// The tree of branches, and a row for each of its runs.
+    /// The tree, with a row for each of its runs.
     tree: Vec<Kin>,
     branches: Table,
     is_tree_read: bool,
@@ -83,12 +80,12 @@ impl Journal {
         self.notes.text() != self.kept
     }
 
-    /// Notes that differ from those that are kept.
+    /// Returns the unsaved notes, if they differ from the saved ones.
     pub fn unsaved(&self) -> Option<String> {
         self.is_draft().then(|| self.notes.text())
     }
 
-    /// Puts notes that were not saved back.
+    /// Restores unsaved notes.
     pub fn restore(&mut self, notes: &str) {
         self.notes = Editor::of(notes);
     }
@@ -98,7 +95,7 @@ impl Journal {
         if self.is_draft() {
             vec![Effect::Request(Request::SetMemo(self.notes.text()))]
         } else {
-            vec![Effect::Say("notes already saved".to_owned())]
+            vec![Effect::Say("Notes already saved".to_owned())]
         }
     }
 }
@@ -117,11 +114,16 @@ impl ScreenState for Journal {
                 Cell::number(f64::from(line.day), line.day.to_string()).role(Role::Dim),
                 Cell::words(line.text).role(line.role),
             ]);
-            self.figures.push(Figure { title: line.title.clone(), term: line.term, sql: line.sql, why: None });
+            self.figures.push(Figure {
+                title: line.title.clone(),
+                term: line.term,
+                sql: line.sql,
+                why: None,
+            });
             self.wholes.push((line.title, line.whole));
         }
         self.table.set_rows(rows);
-        // The editor has its own idea of line ends: only like is compared with like.
+        // The editor normalizes line ends, so both sides must be normalized.
         let kept = Editor::of(&look.company.memo);
         if !self.is_draft() && kept.text() != self.kept {
             self.notes = kept.clone();
@@ -184,7 +186,7 @@ impl Paned for Journal {
             Action::EditMemo => (self.focus, self.editing) = (JournalPane::Notes, true),
             Action::ShowTree if self.has_tree() => self.focus_on(JournalPane::Branches),
             Action::ShowTree => {
-                return Some(vec![Effect::Complain("this run has no branches and is none".to_owned())]);
+                return Some(vec![Effect::Complain("This run has no related runs".to_owned())]);
             }
             Action::SaveMemo => return Some(self.save()),
             Action::LeaveEditor => self.editing = false,
@@ -208,7 +210,7 @@ impl Paned for Journal {
         let (list, below) = self.arrange_tree(canvas, (list, below), area, look);
         draw_pane(self, JournalPane::List, canvas, list, look);
         let [scores, notes] = if wide {
-            // Single forecasts below the scores, where there is room for some of them.
+            // Individual forecasts below the scores, if some of them fit.
             let tall = (few + 9).min(below.height / 2).max(few);
             Layout::vertical([Constraint::Length(tall), Constraint::Min(0)]).areas(below)
         } else {
@@ -219,12 +221,12 @@ impl Paned for Journal {
     }
 }
 
-/// Lowest window in which the tree of branches stands beside everything else.
+/// Minimum height for the tree next to all other panes.
 const ROOM_FOR_TREE: u16 = 26;
 
 impl Journal {
-    /// Draws the tree of branches, if there is one, below the list; in a low window in place of what stands below while it has
-    /// the focus. What is left to the list, and below or beside it.
+    /// Draws the tree, if there is one: below the list, or in low windows in place of the lower panes while
+    /// it has the focus. Returns the areas for the list and the other panes.
     fn arrange_tree(
         &self,
         canvas: &mut Canvas<'_>,

@@ -1,16 +1,15 @@
-//! The notes of the run.
+//! Notes of the run.
 
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::Rect;
 
 use super::{Journal, JournalPane};
 use crate::action::{Action, Scope};
-use crate::effect::Effect;
 use crate::context::Look;
+use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
 use novamind_tui::canvas::Canvas;
 
-/// The editor of the notes.
 pub struct NotesPane;
 
 impl Pane<Journal> for NotesPane {

@@ -1,19 +1,19 @@
-//! How forecasts turned out: by horizon, and one by one for the selected horizon.
+//! Forecast results: by horizon, and individually for the selected horizon.
 
 use ratatui::layout::Rect;
 
 use super::{Journal, JournalPane};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{percent, short_dollars};
 use novamind_session::{ForecastScore, ScoredForecast, filed_forecasts};
 use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::theme::Role;
 use novamind_worker::company::Company;
 
-/// Forecasts of a horizon whose day has come, the newest first.
+/// Returns the forecasts of a horizon that are due, newest first.
 pub fn outcomes(company: &Company, horizon: u32) -> Vec<ScoredForecast> {
     let mut all = filed_forecasts(&company.journal, &company.cash_by_day);
     all.retain(|filed| filed.forecast.horizon_days == horizon && filed.outcome.is_some());
@@ -21,7 +21,6 @@ pub fn outcomes(company: &Company, horizon: u32) -> Vec<ScoredForecast> {
     all
 }
 
-/// The figure of a horizon.
 pub fn figure(company: &Company, selected: usize) -> Option<Figure> {
     let horizon = company.scores.get(selected)?.horizon_days;
     Some(Figure {
@@ -32,14 +31,16 @@ pub fn figure(company: &Company, selected: usize) -> Option<Figure> {
              predicted_upper\nFROM predictions WHERE horizon_days = {horizon} AND submit_day + horizon_days <= {}\n\
              ORDER BY submit_day DESC",
             company.seen.day
-        )), why: None })
+        )),
+        why: None,
+    })
 }
 
 fn weeks(days: u32) -> String {
     format!("{} {}", days / 7, if days == 7 { "week" } else { "weeks" })
 }
 
-/// A line for every horizon, and below them the forecasts of the selected one.
+/// A line per horizon, and the individual forecasts of the selected one.
 pub struct ScoresPane;
 
 impl Pane<Journal> for ScoresPane {
@@ -80,7 +81,7 @@ impl Pane<Journal> for ScoresPane {
         let company = look.company;
         let summary = company.shows_calibration();
         let head = match summary {
-            true => format!("{:<9}{:>10}{:>8}{:>8}", "", "inside", "miss", "width"),
+            true => format!("{:<9}{:>10}{:>8}{:>8}", "", "inside", "error", "width"),
             false => format!("{:<9}{:>10}", "", "came due"),
         };
         let mut rows = rows_of(seat.area);
@@ -98,9 +99,9 @@ impl Pane<Journal> for ScoresPane {
         if let Some(row) = rows.next() {
             let none = company.scores.iter().all(|score| score.scored == 0);
             let text = match (none, summary) {
-                (true, _) => "no forecast has come due yet",
-                (false, true) => "miss, width: share of cash",
-                (false, false) => "point was: share of cash",
+                (true, _) => "no forecast is due yet",
+                (false, true) => "error, width: share of cash",
+                (false, false) => "error: share of cash",
             };
             canvas.text(row, text, Role::Dim);
         }
@@ -110,8 +111,14 @@ impl Pane<Journal> for ScoresPane {
             return;
         }
         if let Some(row) = rows.next() {
-            let head =
-                format!("{:<9}{:>8}{:>8}{:>12} {}", "due", "said", "was", "point was", weeks(score.horizon_days));
+            let head = format!(
+                "{:<9}{:>8}{:>8}{:>12} {}",
+                "due",
+                "point",
+                "actual",
+                "error",
+                weeks(score.horizon_days)
+            );
             canvas.text(row, &head, Role::Header);
         }
         for (row, outcome) in rows.zip(single) {
@@ -132,7 +139,7 @@ fn line_of_outcome(filed: &ScoredForecast) -> String {
     )
 }
 
-/// Near zero cash any miss is a large share of it: beyond some size only that matters.
+/// Limits the shown error, because near zero cash any error is a large share.
 fn limited(share: f64) -> String {
     if share < 10.0 { percent(share, 1) } else { "> 999%".to_owned() }
 }
@@ -146,7 +153,7 @@ fn line_of(score: &ForecastScore) -> String {
     format!("{horizon:<9}{inside:>10}{:>8}{:>8}", limited(score.mean_error), limited(score.mean_sharpness))
 }
 
-/// Too few inside deserves a look once there are enough to judge.
+/// Warns about low coverage if there are at least four forecasts.
 fn role_of(score: &ForecastScore) -> Role {
     match score.scored {
         0 => Role::Dim,

@@ -1,11 +1,11 @@
 use super::*;
 use crate::action::Scope;
-use novamind_worker::company::Company;
 use crate::keys::Keys;
 use crate::screens::Screen;
 use crate::test_kit::{company, picture, session, sweep};
-use novamind_record::trajectory::record::Via;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+use novamind_record::trajectory::record::Via;
+use novamind_worker::company::Company;
 use serde_json::json;
 
 fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
@@ -33,7 +33,7 @@ fn played() -> Company {
         .advance("Cheaper than the others.\nSee who comes.", &forecasts, Via::Form, &mut |_| {})
         .expect("a week");
     session.call("set_prices", &json!({"A": 13}), Via::Form).expect("prices");
-    session.undo(Via::Form).expect("taken back");
+    session.undo(Via::Form).expect("undone");
     Company::of(&session)
 }
 
@@ -57,7 +57,7 @@ fn weeks_stand_with_the_newest_first() {
     assert_eq!(texts[2], "  undo: set_prices A 13 → 12");
     assert!(texts[3].starts_with("week 1 · day 7 · cash $"), "{texts:#?}");
     assert_eq!(texts[4], "  why  Cheaper than the others. See who comes.");
-    assert!(texts[5].starts_with("  said naively: 1 wk $"), "{texts:#?}");
+    assert!(texts[5].starts_with("  filed ") && texts[5].contains(": 1 wk $"), "{texts:#?}");
     assert_eq!(texts[6], "  set_prices A 12 B 25 C 55");
 }
 
@@ -99,7 +99,7 @@ fn an_entry_opens_as_text() {
     let effects = act(&mut screen, &company, Action::Open);
     let [Effect::ShowText(title, text)] = &effects[..] else { panic!("{effects:?}") };
     assert!(title.starts_with("week 1"), "{title}");
-    for part in ["See who comes.", "Forecasts of cash, filled", "set_prices A 12", "How it went"] {
+    for part in ["See who comes.", "Forecasts of cash, filled", "set_prices A 12", "Result:"] {
         assert!(text.contains(part), "{text}");
     }
 }
@@ -134,7 +134,7 @@ fn a_draft_of_the_notes_survives_until_it_is_kept() {
     assert!(!screen.holds_unsent_text());
     company.memo = "from elsewhere".to_owned();
     with_look(&company, |look| screen.renew(look));
-    assert_eq!(screen.notes.text(), "from elsewhere", "nothing was typed: the kept notes are shown");
+    assert_eq!(screen.notes.text(), "from elsewhere", "without typed text the saved notes are shown");
 }
 
 #[test]

@@ -1,20 +1,20 @@
-//! Attempts to find more groups.
+//! Market research attempts.
 
 use ratatui::layout::Rect;
 
 use super::Market;
 use super::model::{Attempt, name_of};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::dollars;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell, Column, Table};
 use novamind_worker::company::Company;
 
-/// The attempts, and what the next one costs.
+/// Past attempts, and the cost of the next one.
 pub struct AttemptsPane;
 
 impl Pane<Market> for AttemptsPane {
@@ -36,7 +36,7 @@ impl Pane<Market> for AttemptsPane {
 
     fn figure(&self, _: &Market, _: &Look<'_>) -> Option<Figure> {
         let sql = "SELECT day, cost, success, discovered_group_id FROM segment_discovery ORDER BY id DESC";
-        let title = "attempts at market research".to_owned();
+        let title = "market research attempts".to_owned();
         Some(Figure { title, term: "market-research", sql: Some(sql.to_owned()), why: None })
     }
 
@@ -62,19 +62,17 @@ impl Pane<Market> for AttemptsPane {
     fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
         if market.facts.attempts.is_empty() {
             let key = look.keys.label(Action::FindGroup).unwrap_or_default();
-            canvas.text(seat.area, &format!("no attempts yet: {key} pays for one"), Role::Dim);
+            canvas.text(seat.area, &format!("No attempts yet. Pay for one with {key}."), Role::Dim);
         } else {
             market.attempts.draw(canvas, seat.area, seat.focused, seat.number);
         }
     }
 }
 
-/// The columns of the table.
 pub fn columns() -> Vec<Column> {
     vec![Column::numbers("day"), Column::numbers("cost"), Column::words("found")]
 }
 
-/// The row of an attempt.
 pub fn row_of(attempt: &Attempt, company: &Company) -> Vec<Cell> {
     let found = match attempt.group {
         Some(group) => Cell::words(format!("{group} {}", name_of(company, group))).role(Role::Good),

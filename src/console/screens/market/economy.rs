@@ -1,15 +1,15 @@
-//! The index of the economy as it was published: when it was measured, when it was told, and what is not told yet.
-//! News of rivals stand below it, day by day.
+//! The published index of the economy: days of measurement, days of publication, and the unpublished period.
+//! News of competitors are marked by day.
 
 use ratatui::layout::Rect;
 
-use super::{Market, hidden};
 use super::model::Published;
 use super::news::RivalNews;
+use super::{Market, hidden};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::grouped;
 use novamind_session::ToolLimits;
 use novamind_tui::canvas::{Canvas, rows_of};
@@ -18,33 +18,31 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Axis, Line, Side, Unit, chart};
 use novamind_worker::company::Company;
 
-/// Marks of how many news of rivals a column holds, beside the fullest one.
+/// Marks for the number of competitor news in a column, relative to the maximum.
 const MARKS: [&str; 4] = ["▁", "▃", "▅", "█"];
 
-/// Day on which the next measurement is published.
+/// Returns the day on which the next measurement is published.
 pub fn next_day(economy: &[Published], terms: &ToolLimits) -> u32 {
     let measured = economy.last().map_or(1, |last| last.day + terms.economy_every_days);
     measured + terms.economy_lag_days
 }
 
-/// What the pane shows.
 pub struct EconomyView<'a> {
-    /// Published measurements, the oldest first.
+    /// Published measurements, oldest first.
     pub economy: &'a [Published],
-    /// The selected one.
+    /// Index of the selected measurement.
     pub point: Option<usize>,
-    /// News of the press, the newest first.
+    /// News of the press, newest first.
     pub news: &'a [RivalNews],
 }
 
 impl<'a> EconomyView<'a> {
-    /// The selected measurement, at first the last one.
+    /// Returns the selected measurement; by default the last one.
     pub fn selected(&self) -> Option<&'a Published> {
         self.point.and_then(|at| self.economy.get(at)).or(self.economy.last())
     }
 }
 
-/// The index of the economy.
 pub struct EconomyPane;
 
 impl Pane<Market> for EconomyPane {
@@ -61,7 +59,9 @@ impl Pane<Market> for EconomyPane {
         Some(Figure {
             title: format!("PMI of day {day}"),
             term: "pmi",
-            sql: Some(format!("SELECT * FROM macroeconomic_conditions WHERE day = {day}")), why: None })
+            sql: Some(format!("SELECT * FROM macroeconomic_conditions WHERE day = {day}")),
+            why: None,
+        })
     }
 
     fn act(&self, market: &mut Market, action: Action, _: &Look<'_>) -> Vec<Effect> {
@@ -75,7 +75,7 @@ impl Pane<Market> for EconomyPane {
             Action::Last | Action::Close => None,
             _ => market.point,
         }
-        // The last one stays the last one when a newer is published.
+        // A selection of the last measurement follows newer ones.
         .filter(|at| *at < last);
         Vec::new()
     }
@@ -87,7 +87,7 @@ impl Pane<Market> for EconomyPane {
             format!("{figures} · {}", here.words)
         });
         let keys = [Action::Left, Action::Right].map(|action| look.keys.label(action).unwrap_or_default());
-        let keys = format!("{}/{} other readings", keys[0], keys[1]);
+        let keys = format!("{}/{} other measurements", keys[0], keys[1]);
         Border { title: "Economy".to_owned(), note, keys, ..Border::default() }
     }
 
@@ -111,7 +111,7 @@ impl Pane<Market> for EconomyPane {
         let mut words = wrapped(&here.text, width);
         words.extend(wrapped(&lag, width));
         if inside.height >= 14 {
-            words.extend(wrapped("◆ published · ░ not yet published · ▁▃▅ news of rivals", width));
+            words.extend(wrapped("◆ published · ░ not yet published · ▁▃▅ news of competitors", width));
         }
         let room = (inside.height / 2) as usize;
         let words = &words[words.len().saturating_sub(room.max(1))..];
@@ -124,14 +124,13 @@ impl Pane<Market> for EconomyPane {
     }
 }
 
-/// A measurement to read.
 fn read(point: &Published) -> Effect {
     Effect::ShowText(format!("PMI of day {} · {}", point.day, point.words), point.text.clone())
 }
 
 fn draw_nothing(canvas: &mut Canvas<'_>, area: Rect, view: &EconomyView<'_>, terms: &ToolLimits) {
     let words = format!(
-        "no index yet: day 1 is published on day {}, {} days after measurement",
+        "No index yet: day 1 is published on day {}, {} days after measurement",
         next_day(view.economy, terms),
         terms.economy_lag_days
     );
@@ -140,10 +139,16 @@ fn draw_nothing(canvas: &mut Canvas<'_>, area: Rect, view: &EconomyView<'_>, ter
     }
 }
 
-/// The curve over the days of measurement, and below it two lanes: days of publication, news of rivals.
-fn draw_curve(canvas: &mut Canvas<'_>, area: Rect, company: &Company, view: &EconomyView<'_>, here: &Published) {
+/// Draws the curve by day of measurement, above two lanes with days of publication and news of competitors.
+fn draw_curve(
+    canvas: &mut Canvas<'_>,
+    area: Rect,
+    company: &Company,
+    view: &EconomyView<'_>,
+    here: &Published,
+) {
     let lanes = if area.height >= 9 { 2 } else { 0 };
-    // The names of the lanes stand left of the axis, and want four columns.
+    // The lane names need four columns left of the axis.
     let indent = if lanes > 0 { 2.min(area.width) } else { 0 };
     let upper = Rect { x: area.x + indent, width: area.width - indent, height: area.height - lanes, ..area };
     let today = company.seen.day.max(2);
@@ -196,7 +201,7 @@ fn count_at(news: &[RivalNews], holds: impl Fn(u32) -> bool) -> usize {
     news.iter().filter(|item| item.rival.is_some() && holds(item.post.day)).count()
 }
 
-/// Where the curve stands: right of the axis of values and above that of days, as the chart has drawn them.
+/// Returns the area of the curve, without the axes that the chart has drawn.
 fn plot_of(canvas: &Canvas<'_>, area: Rect) -> Option<Rect> {
     let area = area.intersection(canvas.area());
     let below = area.bottom().checked_sub(2).filter(|_| area.height >= 4)?;
@@ -205,7 +210,7 @@ fn plot_of(canvas: &Canvas<'_>, area: Rect) -> Option<Rect> {
     (width > 3).then(|| Rect { x: axis + 1, y: area.y, width, height: area.height - 2 })
 }
 
-/// Marks the days of which nothing is told yet, where no curve is.
+/// Shades the days without published values.
 fn shade(canvas: &mut Canvas<'_>, area: Rect) {
     for row in rows_of(area.intersection(canvas.area())) {
         for x in row.left()..row.right() {

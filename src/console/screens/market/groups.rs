@@ -1,13 +1,13 @@
-//! Every group in a row: what is known of it, and what the next study would bring.
+//! Table of all groups with study levels and next studies.
 
 use ratatui::layout::Rect;
 
 use super::model::{Known, level_of, name_of, study_of, target_of, undiscovered};
 use super::{Market, knowledge_of};
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, percent};
 use novamind_session::identifiers::Group;
 use novamind_tui::canvas::Canvas;
@@ -15,7 +15,6 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell, Column, Field, Table};
 use novamind_worker::company::Company;
 
-/// The table of the groups.
 pub struct KnownGroupsPane;
 
 impl Pane<Market> for KnownGroupsPane {
@@ -37,11 +36,11 @@ impl Pane<Market> for KnownGroupsPane {
 
     fn figure(&self, market: &Market, look: &Look<'_>) -> Option<Figure> {
         let (term, what) = match market.table.selected_column() {
-            2 | 3 => ("group_info_levels.info_level", "level of knowledge of"),
+            2 | 3 => ("group_info_levels.info_level", "study level of"),
             4 => ("research_group.target_level", "the next study of"),
-            5 => ("group_info_levels.discovered_day", "day of finding"),
+            5 => ("group_info_levels.discovered_day", "day found of"),
             6 => ("group_info_levels.last_research_day", "last study of"),
-            _ => ("group_info_levels.group_id", "knowledge of"),
+            _ => ("group_info_levels.group_id", "facts about"),
         };
         knowledge_of(market.group()?, look.company, term, what)
     }
@@ -90,16 +89,14 @@ impl Pane<Market> for KnownGroupsPane {
     }
 }
 
-/// The columns of the table.
 pub fn columns() -> Vec<Column> {
     let mut columns = vec![Column::words("group"), Column::words("name").at_most(28).at_least(20)];
     columns.extend(["level", "error"].map(Column::numbers));
     columns.push(Column::words("next study"));
-    columns.extend(["found", "figures of"].map(Column::numbers));
+    columns.extend(["found", "as of"].map(Column::numbers));
     columns
 }
 
-/// The row of a group.
 pub fn row_of(group: Group, known: Known, company: &Company) -> Vec<Cell> {
     let level = level_of(company, group);
     let none = || Cell::words("–").role(Role::Dim);

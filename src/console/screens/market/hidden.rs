@@ -1,32 +1,36 @@
-//! What rivals, drift and the economy really are, in lines above what is told of them, where that is shown.
+//! True values of competitors, drift and the economy, shown above the public figures if the x-ray is open.
 
 use ratatui::layout::Rect;
 
+use novamind_base::notation::grouped;
+use novamind_insight::{HiddenValues, NextRivalMove};
 use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
-use novamind_base::notation::grouped;
-use novamind_insight::{HiddenValues, NextRivalMove};
 
-/// Rivals: what they could copy, and their next move.
+/// Returns the lines on competitors: quality that they have not copied yet, and their next move.
 pub fn of_rivals(hidden: &HiddenValues) -> Vec<String> {
     let own: Vec<String> =
         hidden.own_banks.iter().map(|(group, bank)| format!("{group} {}", grouped(*bank, 4))).collect();
-    let own = if own.is_empty() { String::new() } else { format!(", of groups {}", own.join(", ")) };
+    let own = if own.is_empty() { String::new() } else { format!(", by group {}", own.join(", ")) };
     vec![
-        format!("x-ray, day {}: not copied {}{own}", hidden.day, grouped(hidden.shared_bank, 4)),
+        format!("x-ray, day {}: uncopied quality {}{own}", hidden.day, grouped(hidden.shared_bank, 4)),
         next_move(hidden.next_move.as_ref()),
     ]
 }
 
 fn next_move(next: Option<&NextRivalMove>) -> String {
-    let Some(next) = next else { return "x-ray: rivals make no move before the end".to_owned() };
+    let Some(next) = next else { return "x-ray: competitors make no move before the end".to_owned() };
     match &next.made {
         Some(made) => {
-            format!("x-ray: the next move, on day {}, added {} to expectations", next.day, grouped(made.boost, 4))
+            format!(
+                "x-ray: the next move, on day {}, raised expectations by {}",
+                next.day,
+                grouped(made.boost, 4)
+            )
         }
         None => format!(
-            "x-ray: next move on day {}: {}, or {} of what is not copied if that is more",
+            "x-ray: next move on day {}: {}, or {} of the uncopied quality if that is more",
             next.day,
             grouped(next.sampled, 4),
             novamind_base::notation::percent(next.u, 0)
@@ -34,21 +38,21 @@ fn next_move(next: Option<&NextRivalMove>) -> String {
     }
 }
 
-/// The economy and drift.
+/// Returns the lines on the economy and drift.
 pub fn of_economy(hidden: &HiddenValues) -> Vec<String> {
     let drift = match hidden.next_drift {
-        Some(day) => format!("drift next on day {day}"),
+        Some(day) => format!("next drift on day {day}"),
         None => "no drift before the end".to_owned(),
     };
     vec![format!(
-        "x-ray, day {}: PMI {}; everyone expects {} more than on day 0; {drift}",
+        "x-ray, day {}: PMI {}; expectations are {} higher than on day 0; {drift}",
         hidden.day,
         grouped(hidden.pmi, 2),
         grouped(hidden.everyone, 4)
     )]
 }
 
-/// Draws such lines at the top of a place, as far as half of it; what is left below them.
+/// Draws the lines in at most the upper half of an area; returns the rest.
 pub fn draw_above(canvas: &mut Canvas<'_>, area: Rect, told: &[String]) -> Rect {
     let lines: Vec<String> =
         told.iter().flat_map(|line| wrapped(line, usize::from(area.width.max(1)))).collect();

@@ -1,4 +1,4 @@
-//! The market: groups and studies, finding others, the economy, and what the press tells of rivals.
+//! The market: groups and studies, market research, the economy, and press reports about competitors.
 
 mod attempts;
 mod economy;
@@ -16,15 +16,15 @@ use strum::VariantArray;
 
 use self::model::{MarketFacts, level_of, name_of, target_of, undiscovered};
 use self::news::RivalNews;
-use super::panes::{Pane, Paned, draw_pane};
-use crate::context::{Figure, Look, ScreenId};
 use super::ScreenState;
+use super::panes::{Pane, Paned, draw_pane};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look, ScreenId};
 use crate::effect::Effect;
 use novamind_base::notation::{dollars, grouped};
-use novamind_session::identifiers::Group;
 use novamind_database::Rows;
 use novamind_session::Preview;
+use novamind_session::identifiers::Group;
 use novamind_tools::{Answer, DiscoveryAttempt, ToolId};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
@@ -35,17 +35,17 @@ use novamind_worker::posts::Posts;
 use novamind_worker::questions::CallCheck;
 use novamind_worker::readings::Reading;
 
-/// Its panes, in the order of the tab key.
+/// Panes in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
 pub enum MarketPane {
-    /// Every group in a row.
+    /// Table of the groups.
     #[default]
     Groups,
-    /// What the study of the selected group says.
+    /// Estimates of the selected group's study.
     Report,
-    /// Attempts to find more groups.
+    /// Market research attempts.
     Attempts,
-    /// What the press writes.
+    /// News of the press.
     News,
     /// The index of the economy.
     Economy,
@@ -54,30 +54,28 @@ pub enum MarketPane {
 const FIND: ToolId = ToolId::ResearchMarket;
 const STUDY: ToolId = ToolId::ResearchGroup;
 
-/// Actions worth showing where a group is selected.
+/// Footer actions for a selected group.
 const GROUP_HINTS: [Action; 5] =
     [Action::Open, Action::GroupCurve, Action::StudyGroup, Action::FindGroup, Action::Filter];
 
-/// The screen.
+/// The market screen.
 #[derive(Default)]
 pub struct Market {
     focus: MarketPane,
     facts: MarketFacts,
-    /// Groups in the order of the table: the known ones first.
+    /// Groups in table order, known groups first.
     groups: Vec<Group>,
     table: Table,
     attempts: Table,
     news: Vec<RivalNews>,
-    /// Posts from which the news were picked.
     posts: Posts,
     headlines: Table,
-    /// Measurement of the economy that is selected; the last one if none.
+    /// Index of the selected measurement of the economy; `None` for the last one.
     point: Option<usize>,
-    /// Level that was chosen for the next study.
+    /// Chosen level of the next study.
     target: Option<u8>,
-    /// First line of the report that is shown.
     from: usize,
-    /// Call that is being looked at before the question.
+    /// Check of the tool call before the user confirms it.
     asking: Pending<CallCheck>,
 }
 
@@ -85,7 +83,7 @@ impl Market {
     /// Selects a group and shows its report.
     pub fn show(&mut self, group: Group) {
         self.focus = MarketPane::Groups;
-        // A filter may hide the group.
+        // A filter could hide the group.
         self.table.act(Action::Close, 1);
         if let Some(row) = self.groups.iter().position(|own| *own == group) {
             self.table.select(row);
@@ -93,49 +91,48 @@ impl Market {
         self.turn();
     }
 
-    /// What a call of a tool brought.
     fn answered(&mut self, answer: &Answer, company: &Company) -> Vec<Effect> {
         match answer {
             Answer::ResearchMarket(DiscoveryAttempt::Found { discovered_group_id: group }) => {
                 self.show(*group);
-                vec![Effect::Say(format!("{group} was found: {}", name_of(company, *group)))]
+                vec![Effect::Say(format!("Found {group}: {}", name_of(company, *group)))]
             }
             Answer::ResearchMarket(DiscoveryAttempt::Nothing { .. }) => {
-                vec![Effect::Say("nothing was found this time; the next may be luckier".to_owned())]
+                vec![Effect::Say("No group found this time".to_owned())]
             }
             Answer::ResearchGroup(study) => {
                 self.target = None;
-                vec![Effect::Say(format!("the study is due on day {}", study.expected_completion_day))]
+                vec![Effect::Say(format!("The study is due on day {}", study.expected_completion_day))]
             }
             _ => Vec::new(),
         }
     }
 
-    /// Another group is selected: its report begins at the top.
+    /// Resets the report after a change of the selected group.
     fn turn(&mut self) {
         (self.target, self.from) = (None, 0);
     }
 
-    /// The same, if another group was selected before.
+    /// Resets the report if the selected group has changed.
     fn turn_from(&mut self, before: Option<Group>) {
         if before != self.group() {
             self.turn();
         }
     }
 
-    /// Leads to the customers of the selected group.
+    /// Opens the customers screen with the selected group.
     fn show_customers(&self, company: &Company) -> Vec<Effect> {
         let effect = self.group().map(|group| match level_of(company, group) {
-            0 => Effect::Complain(format!("{group} is not found yet; nothing is known of it")),
+            0 => Effect::Complain(format!("{group} has not been found yet")),
             _ => Effect::ShowGroup(ScreenId::Customers, group),
         });
         effect.into_iter().collect()
     }
 
-    /// The curve of the selected group.
+    /// Opens the participation curve of the selected group.
     fn show_curve(&self, company: &Company) -> Vec<Effect> {
         let effect = self.group().map(|group| match level_of(company, group) {
-            0 => Effect::Complain(format!("{group} is not found yet; nothing is known of its curve")),
+            0 => Effect::Complain(format!("{group} has not been found yet")),
             _ => Effect::ShowCurve(Some(group)),
         });
         effect.into_iter().collect()
@@ -176,16 +173,16 @@ impl Market {
                 let level = target_of(company, group, self.target);
                 self.check(STUDY, json!({ "group_id": group.id(), "target_level": level }))
             }
-            None => vec![Effect::Complain("only known groups can be studied".to_owned())],
+            None => vec![Effect::Complain("Only known groups can be studied".to_owned())],
         }
     }
 
-    /// The question before a call that costs money.
+    /// Returns the confirmation of a tool call that costs money.
     fn ask(&self, tool: ToolId, arguments: Value, preview: &Preview, company: &Company) -> Effect {
         let rest = company.seen.cash - preview.cost_now;
         let what = match tool {
             FIND => format!(
-                "A market research attempt has a {} % chance to find one of the {} groups still unknown.",
+                "A market research attempt has a {} % chance to find one of the {} groups not found yet.",
                 grouped(company.terms.attempt_chance * 100.0, 0),
                 undiscovered(company)
             ),
@@ -193,7 +190,7 @@ impl Market {
                 let text = |name: &str| arguments.get(name).map_or(String::new(), Value::to_string);
                 let group = text("group_id").replace('"', "");
                 let level = text("target_level");
-                format!("A study of {group}, to level {level}.")
+                format!("A study of {group} to level {level}.")
             }
         };
         let when = preview.effect_day.map_or(String::new(), |day| format!(" It is done on day {day}."));
@@ -284,9 +281,9 @@ impl Paned for Market {
     fn act_anywhere(&mut self, action: Action, look: &Look<'_>) -> Option<Vec<Effect>> {
         match action {
             Action::FindGroup => Some(self.check(FIND, json!({}))),
-            // What is ordered is the group that is seen to be selected.
+            // The user must see which group is selected.
             Action::StudyGroup if !matches!(self.focus, MarketPane::Groups | MarketPane::Report) => {
-                Some(vec![Effect::Complain("select the group to study in the pane of groups first".to_owned())])
+                Some(vec![Effect::Complain("First select the group in the groups pane".to_owned())])
             }
             Action::StudyGroup => Some(self.study(look.company)),
             Action::GroupCurve => Some(self.show_curve(look.company)),
@@ -303,7 +300,7 @@ impl Paned for Market {
         if area.width >= 104 && area.height >= 24 {
             return self.arrange_all(canvas, area, look);
         }
-        // What has the focus takes the window; groups and report share it, attempts and economy, too.
+        // The focused pane takes the window. Groups and report share it, as do attempts and economy.
         let halves = [Constraint::Percentage(50), Constraint::Min(0)];
         let [upper, lower] = Layout::vertical(halves).areas(area);
         let (above, below) = match self.focus {
@@ -340,12 +337,11 @@ impl Market {
     }
 }
 
-/// Scopes of a pane that is a table.
 fn scopes(table: &Table) -> Vec<Scope> {
     if table.is_typing() { vec![Scope::Field] } else { vec![Scope::Market, Scope::List] }
 }
 
-/// Moves in a table; tab ends typing there.
+/// Moves in a table; tab ends typing.
 fn walk(table: &mut Table, action: Action, look: &Look<'_>) {
     let action = match action {
         Action::CommitNext | Action::CommitPrevious => Action::Commit,
@@ -354,11 +350,13 @@ fn walk(table: &mut Table, action: Action, look: &Look<'_>) {
     table.act(action, look.page);
 }
 
-/// What is known of a group, as a figure.
+/// Returns the figure of a study value of a group.
 fn knowledge_of(group: Group, company: &Company, term: &'static str, what: &str) -> Option<Figure> {
-    let what = if level_of(company, group) == 0 { "what is known of" } else { what };
+    let what = if level_of(company, group) == 0 { "facts about" } else { what };
     Some(Figure {
         title: format!("{what} {group}"),
         term,
-        sql: Some(format!("SELECT * FROM group_info_levels WHERE group_id = '{group}'")), why: None })
+        sql: Some(format!("SELECT * FROM group_info_levels WHERE group_id = '{group}'")),
+        why: None,
+    })
 }

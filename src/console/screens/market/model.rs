@@ -1,32 +1,33 @@
-//! What is known of the groups, what finding others has cost, and the index of the economy.
+//! Market figures collected from the readings: groups, market research attempts, and the index of the
+//! economy.
 
 use std::collections::BTreeMap;
 
-use novamind_worker::company::Company;
-use novamind_worker::readings::Reading;
 use novamind_database::{Cell, Rows, number_at, text_at};
 use novamind_session::RunningStudy;
 use novamind_session::identifiers::Group;
+use novamind_worker::company::Company;
+use novamind_worker::readings::Reading;
 
-/// Since when a group is known.
+/// Study level of a group, with dates.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Known {
-    /// Level of knowledge, 0 while it is not found.
+    /// Study level; 0 if the group has not been found.
     pub level: u8,
-    /// Day on which it was found; 0 for the groups of the start.
+    /// Day on which it was found; 0 for the initial groups.
     pub found: Option<u32>,
-    /// Day on which the level rose last.
+    /// Day on which the level last rose.
     pub studied: Option<u32>,
 }
 
-/// An attempt at market research.
+/// A market research attempt.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Attempt {
-    /// Day.
+    /// Day of the attempt.
     pub day: u32,
-    /// Dollars.
+    /// Cost in dollars.
     pub cost: f64,
-    /// What was found.
+    /// Group that was found.
     pub group: Option<Group>,
 }
 
@@ -35,29 +36,29 @@ pub struct Attempt {
 pub struct Published {
     /// Day of the measurement.
     pub day: u32,
-    /// Index.
+    /// Value of the index.
     pub value: f64,
-    /// Its change from the measurement before.
+    /// Change since the previous measurement.
     pub change: f64,
-    /// Trend and phase in words.
+    /// Trend and phase.
     pub words: String,
     /// Description.
     pub text: String,
 }
 
-/// Everything the readings say.
+/// All figures from the readings.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct MarketFacts {
-    /// Knowledge of the groups.
+    /// Study levels by group.
     pub known: BTreeMap<Group, Known>,
-    /// Attempts, the newest first.
+    /// Attempts, newest first.
     pub attempts: Vec<Attempt>,
-    /// The economy, the oldest first.
+    /// Measurements of the economy, oldest first.
     pub economy: Vec<Published>,
 }
 
 impl MarketFacts {
-    /// Takes a reading in place of what it said before.
+    /// Replaces a reading.
     pub fn take(&mut self, reading: Reading, rows: &Rows) {
         let rows = rows.rows.iter();
         match reading {
@@ -71,12 +72,12 @@ impl MarketFacts {
         }
     }
 
-    /// Dollars of all attempts.
+    /// Returns the dollars spent on all attempts.
     pub fn spent(&self) -> f64 {
         self.attempts.iter().map(|attempt| attempt.cost).sum()
     }
 
-    /// Number of attempts that found a group.
+    /// Returns the number of attempts that found a group.
     pub fn found(&self) -> usize {
         self.attempts.iter().filter(|attempt| attempt.group.is_some()).count()
     }
@@ -105,27 +106,27 @@ fn published(row: &[Cell]) -> Published {
     }
 }
 
-/// The study of a group that runs.
+/// Returns the running study of a group.
 pub fn study_of(company: &Company, group: Group) -> Option<&RunningStudy> {
     company.studies.iter().find(|study| study.group == group)
 }
 
-/// Level of a known group, as its insight report says.
+/// Returns the study level of a known group, from its insight report.
 pub fn level_of(company: &Company, group: Group) -> u8 {
     company.insights.get(&group).map_or(0, |insights| insights.info_level)
 }
 
-/// Name of a known group.
+/// Returns the name of a known group.
 pub fn name_of(company: &Company, group: Group) -> &str {
     company.insights.get(&group).map_or("", |insights| &insights.group_name)
 }
 
-/// Groups that are still to be found, as get_market_overview counts them.
+/// Returns the number of groups that have not been found, as in `get_market_overview`.
 pub fn undiscovered(company: &Company) -> usize {
     company.market.undiscovered_count
 }
 
-/// Level that a study aims at: the chosen one as far as it is allowed, else the next.
+/// Returns the level of the next study: the chosen one if it is allowed, otherwise the next level.
 pub fn target_of(company: &Company, group: Group, chosen: Option<u8>) -> u8 {
     let (least, most) = company.terms.targets;
     let now = level_of(company, group);

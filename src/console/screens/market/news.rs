@@ -1,4 +1,4 @@
-//! What the press writes: of which rival, or of the economy.
+//! News of the press about competitors and the economy.
 
 use std::sync::Arc;
 
@@ -6,25 +6,22 @@ use ratatui::layout::Rect;
 
 use super::{Market, hidden};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell, Column, Table};
 use novamind_worker::company::Company;
-use novamind_worker::posts::{PostKind, Post};
+use novamind_worker::posts::{Post, PostKind};
 
-/// A piece of news.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RivalNews {
-    /// The post.
     pub post: Arc<Post>,
-    /// The rival that it names.
     pub rival: Option<String>,
 }
 
-/// The news of the press, the newest first.
+/// Returns the news of the press, newest first.
 pub fn of(company: &Company) -> Vec<RivalNews> {
     let press = company.posts.iter().filter(|post| post.kind == PostKind::Press);
     let item = |post: &Arc<Post>| {
@@ -34,7 +31,6 @@ pub fn of(company: &Company) -> Vec<RivalNews> {
     press.map(item).collect()
 }
 
-/// What the press writes.
 pub struct RivalNewsPane;
 
 impl Pane<Market> for RivalNewsPane {
@@ -60,7 +56,9 @@ impl Pane<Market> for RivalNewsPane {
         Some(Figure {
             title: format!("news #{number}"),
             term: if item.rival.is_some() { "competitor" } else { "press" },
-            sql: Some(format!("SELECT * FROM social_media_posts WHERE post_id = {number}")), why: None })
+            sql: Some(format!("SELECT * FROM social_media_posts WHERE post_id = {number}")),
+            why: None,
+        })
     }
 
     fn act(&self, market: &mut Market, action: Action, look: &Look<'_>) -> Vec<Effect> {
@@ -83,7 +81,7 @@ impl Pane<Market> for RivalNewsPane {
             true => String::new(),
             false => look.hints(&[Action::Open, Action::Filter]),
         };
-        Border { title: "Rivals and economy in the news".to_owned(), note, keys, ..Border::default() }
+        Border { title: "Competitors and economy in the news".to_owned(), note, keys, ..Border::default() }
     }
 
     fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
@@ -92,7 +90,7 @@ impl Pane<Market> for RivalNewsPane {
             None => seat.area,
         };
         if market.news.is_empty() {
-            canvas.text(area, "no news yet", Role::Dim);
+            canvas.text(area, "No news yet", Role::Dim);
             return;
         }
         market.headlines.draw(canvas, area, seat.focused, seat.number);
@@ -103,12 +101,10 @@ fn selected(market: &Market) -> Option<&RivalNews> {
     market.headlines.selected().and_then(|row| market.news.get(row))
 }
 
-/// The columns of the table.
 pub fn columns() -> Vec<Column> {
     vec![Column::numbers("day"), Column::words("about"), Column::words("news").at_most(u16::MAX)]
 }
 
-/// The row of a piece of news.
 pub fn row_of(item: &RivalNews) -> Vec<Cell> {
     vec![
         Cell::number(f64::from(item.post.day), item.post.day.to_string()).role(Role::Dim),

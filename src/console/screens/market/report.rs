@@ -1,4 +1,4 @@
-//! The insight report of a group: estimates with what the truth can be, influence, and the next study.
+//! The insight report of a group: estimates with ranges, influence, and the next study.
 
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
@@ -6,9 +6,9 @@ use unicode_width::UnicodeWidthStr;
 use super::model::{level_of, name_of, study_of, target_of};
 use super::{Market, MarketPane, knowledge_of};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, dollars, grouped, percent};
 use novamind_report::fit::{Fit, TruthRange};
 use novamind_session::identifiers::Group;
@@ -19,7 +19,7 @@ use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_worker::company::Company;
 
-/// A line: words to the left, figures to the right.
+/// A line with text at the left and figures at the right.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReportLine {
     words: String,
@@ -36,43 +36,43 @@ impl ReportLine {
         ReportLine { words, figures, role: Role::Text }
     }
 
-    /// What an estimate is of, from within.
+    /// Returns a line with the true value of the estimate above.
     fn of_truth(figures: String) -> ReportLine {
-        ReportLine { words: "  x-ray: truly".to_owned(), figures, role: Role::Changed }
+        ReportLine { words: "  x-ray: true".to_owned(), figures, role: Role::Changed }
     }
 }
 
-/// An estimate: where the insights hold it, the words for it, its unit, and how the ends of its range are written.
+/// An estimate: accessor, label, unit and format.
 type Estimate = (fn(&Estimates) -> Option<f64>, &'static str, &'static str, fn(f64) -> String);
 
-/// The floor has a range on other screens, too.
-const QUALITY_FLOOR: &str = "quality floor";
+/// Other screens show a range for it, too.
+const QUALITY_FLOOR: &str = "required quality";
 
 const ESTIMATES: [Estimate; 8] = [
     (|all| Some(all.willingness_to_pay), BUDGET, "$/month", figure),
     (|all| Some(all.usage_volume), USAGE, "units/day", figure),
     (|all| Some(all.quality_floor_q_min), QUALITY_FLOOR, "", exact),
     (|all| Some(all.market_cap as f64), MARKET, "customers", figure),
-    (|all| Some(all.annual_market_cap_growth_rate), "growth of the market", "a year", share),
+    (|all| Some(all.annual_market_cap_growth_rate), "market growth", "a year", share),
     (|all| Some(all.contract_lockin_aversion), "lock-in aversion", "", exact),
-    (|all| all.decision_rounds.map(|rounds| rounds as f64), "rounds of a deal", "", figure),
-    (|all| all.avg_response_days, "days to an answer", "", figure),
+    (|all| all.decision_rounds.map(|rounds| rounds as f64), "rounds per deal", "", figure),
+    (|all| all.avg_response_days, "response time", "days", figure),
 ];
 
-/// The use has a range on other screens, too.
-const USAGE: &str = "usage demand";
+/// Other screens show a range for it, too.
+const USAGE: &str = "usage";
 
-/// The budget has a range and a true value on other screens, too, and so has the market.
+/// Other screens show a range and a true value for these, too.
 const BUDGET: &str = "budget";
-const MARKET: &str = "market";
+const MARKET: &str = "market cap";
 
-/// What an estimate is of on the day that is shown, where true values are.
+/// Returns the true value on the shown day, if the x-ray is open.
 fn truth_of(words: &str, group: Group, company: &Company) -> Option<String> {
     let own = &company.hidden.as_ref()?.groups[group];
     Some(match words {
         BUDGET => figure(own.budget),
         QUALITY_FLOOR => exact(own.quality_floor),
-        MARKET if own.market_cap <= 0.0 => "without a limit".to_owned(),
+        MARKET if own.market_cap <= 0.0 => "no limit".to_owned(),
         MARKET => grouped(own.market_cap, 0),
         _ => return None,
     })
@@ -95,21 +95,21 @@ fn share(value: f64) -> String {
     percent(value, 1)
 }
 
-/// The report of a known group.
+/// Returns the lines of the report of a known group.
 pub fn lines(company: &Company, group: Group) -> Vec<ReportLine> {
     let Some(insights) = company.insights.get(&group) else { return Vec::new() };
     let noise = company.terms.level(level_of(company, group)).map_or(0.0, |level| level.noise);
-    let mut lines = vec![ReportLine::head("mean of the group", "is between")];
+    let mut lines = vec![ReportLine::head("mean of the group", "range")];
     for (estimate, words, unit, write) in ESTIMATES {
         let Some(value) = estimate(&insights.estimates) else { continue };
         let (from, to) = truth_behind(value, noise);
         let unit = match (unit, group.is_enterprise()) {
-            ("$/month", true) => "$/month a seat",
-            ("units/day", true) => "units/day a seat",
-            ("customers", true) => "companies",
+            ("$/month", true) => "$/month, seat",
+            ("units/day", true) => "units/day, seat",
+            ("customers", true) => "enterprises",
             (unit, _) => unit,
         };
-        // Ranges that other screens show, too, are written by the one that defines them.
+        // Ranges on other screens come from the same type, so that all agree.
         let truth = TruthRange::behind(value, noise);
         let range = match words {
             QUALITY_FLOOR => truth.quality(),
@@ -121,13 +121,13 @@ pub fn lines(company: &Company, group: Group) -> Vec<ReportLine> {
     }
     if let Some(range) = insights.estimates.seat_range {
         let [least, most] = range.map(|seats| seats as f64);
-        for (words, seats) in [("smallest company", least), ("largest company", most)] {
+        for (words, seats) in [("smallest enterprise", least), ("largest enterprise", most)] {
             let (from, to) = truth_behind(seats, noise);
             let range = format!("{} to {}", figure(from), figure(to));
             lines.push(ReportLine::of(format!("{words:<21}seats"), range));
         }
     }
-    lines.push(ReportLine::head("word of mouth", "leads a day per 1,000 subscribers"));
+    lines.push(ReportLine::head("word of mouth", "leads/day per 1,000 subscribers"));
     influence(&mut lines, &insights.network_influence, noise, &|rate| figure(rate * 1000.0));
     lines.push(ReportLine::head("reputation", "weight of reputation"));
     influence(&mut lines, &insights.reputation_influence, noise, &exact);
@@ -146,25 +146,26 @@ fn influence(lines: &mut Vec<ReportLine>, influence: &Influence, noise: f64, wri
         if links.is_empty() {
             lines.push(ReportLine::of(format!("  {words} no known group"), String::new()));
         }
-        lines.extend(links.iter().map(|(id, value)| ReportLine::of(format!("  {words} {id}"), range(*value))));
+        lines
+            .extend(links.iter().map(|(id, value)| ReportLine::of(format!("  {words} {id}"), range(*value))));
     }
 }
 
-/// The day that figures of a group are of, and their age.
+/// Returns the day and age of a group's estimates.
 pub fn studied(company: &Company, group: Group) -> String {
     company.fit(group).map_or(String::new(), Fit::studied)
 }
 
-/// What a study would cost and bring, or which one runs.
+/// Returns the cost and result of the next study, or the running study.
 fn study_words(company: &Company, group: Group, chosen: Option<u8>) -> String {
     if let Some(study) = study_of(company, group) {
-        return format!("a study to level {} is due on day {}", study.target, study.due_day);
+        return format!("study to level {} due on day {}", study.target, study.due_day);
     }
     let target = target_of(company, group, chosen);
     let Some(terms) = company.terms.level(target) else { return String::new() };
     let what = match target == level_of(company, group) {
-        true => format!("fresh figures at level {target}"),
-        false => format!("level {target}"),
+        true => format!("update at level {target}"),
+        false => format!("to level {target}"),
     };
     format!("{what}: {}, {} days, then ±{}", dollars(terms.cost), terms.days, percent(terms.noise, 0))
 }
@@ -241,11 +242,11 @@ impl Pane<Market> for ReportPane {
     }
 }
 
-/// How a group that is not found yet can be found.
+/// Explains how an unknown group can be found.
 fn draw_unknown(canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
     let terms = &look.company.terms;
     let words = format!(
-        "This group is still unknown: {} pays {} for a market research attempt; {} % of attempts find one of the unknown groups. A found group sends leads from the next day on.",
+        "This group has not been found yet. {} pays {} for a market research attempt; {} % of attempts find one of the unknown groups. A found group sends leads from the next day.",
         look.keys.label(Action::FindGroup).unwrap_or_default(),
         dollars(terms.attempt_cost),
         grouped(terms.attempt_chance * 100.0, 0)
@@ -255,14 +256,14 @@ fn draw_unknown(canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
     }
 }
 
-/// Draws the estimates of a known group from one of their lines on.
+/// Draws the estimates from a given line.
 pub fn draw_estimates(canvas: &mut Canvas<'_>, area: Rect, company: &Company, group: Group, from: usize) {
     let lines = lines(company, group);
     let from = from.min(lines.len().saturating_sub(area.height as usize));
     for (row, line) in rows_of(area).zip(&lines[from..]) {
         canvas.text(row, &line.words, line.role);
         let taken = line.words.width() as u16 + 2;
-        // Half a range would be a wrong one.
+        // Do not draw a range that is cut off.
         if taken + line.figures.width() as u16 <= row.width {
             canvas.aligned(row, &line.figures, line.role, Align::Right);
         }

@@ -2,18 +2,18 @@ use std::sync::Arc;
 
 use super::*;
 use crate::keys::Keys;
-use novamind_worker::posts::PostKind;
 use crate::screens::Screen;
 use crate::test_kit::{act, asked, drawn, on_screen, played, shown};
 use novamind_record::trajectory::record::Via;
 use novamind_session::Session;
+use novamind_worker::posts::PostKind;
 
 fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
     let keys = Keys::shipped();
     work(&Look { company, keys: &keys, page: 5 })
 }
 
-/// Plays a question to its end: the look ahead, the question, the call, what the screen says.
+/// Confirms an order: check, confirmation, tool call, message.
 fn order(screen: &mut Market, session: &mut Session, action: Action) -> (String, Vec<Effect>) {
     let company = Company::of(session);
     let effects = act(screen, action, &company);
@@ -41,17 +41,17 @@ fn a_study_is_chosen_asked_for_and_shown_until_it_is_done() {
     let (mut session, company, mut screen) = on_screen::<Market>(1);
     act(&mut screen, Action::LevelUp, &company);
     let text = drawn(&screen, &company, 120, 37);
-    assert!(text.contains("level 3: $175,000, 5 days, then ±25%"), "{text}");
+    assert!(text.contains("to level 3: $175,000, 5 days, then ±25%"), "{text}");
     act(&mut screen, Action::LevelDown, &company);
     act(&mut screen, Action::LevelDown, &company);
     let (question, said) = order(&mut screen, &mut session, Action::StudyGroup);
-    for part in ["A study of S1, to level 2.", "$60,000", "day 10", "cannot be undone"] {
+    for part in ["A study of S1 to level 2.", "$60,000", "day 10", "cannot be undone"] {
         assert!(question.contains(part), "{part} in {question}");
     }
     assert!(matches!(&said[..], [Effect::Say(text)] if text.contains("day 10")), "{said:?}");
     let company = Company::of(&session);
     let text = drawn(&screen, &company, 120, 37);
-    assert!(text.contains("→2 due day 10") && text.contains("a study to level 2 is due on day 10"), "{text}");
+    assert!(text.contains("→2 due day 10") && text.contains("study to level 2 due on day 10"), "{text}");
     week(&mut session);
     let company = Company::of(&session);
     let screen: Market = shown(&mut session, &company);
@@ -62,7 +62,7 @@ fn a_study_is_chosen_asked_for_and_shown_until_it_is_done() {
 #[test]
 fn attempts_find_groups_and_are_listed() {
     let (mut session, company, mut screen) = on_screen::<Market>(0);
-    assert!(drawn(&screen, &company, 120, 37).contains("no attempts yet: m pays for one"));
+    assert!(drawn(&screen, &company, 120, 37).contains("No attempts yet. Pay for one with m."));
     let mut found = None;
     for _ in 0..25 {
         let (question, said) = order(&mut screen, &mut session, Action::FindGroup);
@@ -71,7 +71,7 @@ fn attempts_find_groups_and_are_listed() {
             "{question}"
         );
         let [Effect::Say(text)] = &said[..] else { panic!("{said:?}") };
-        if text.contains("was found") {
+        if text.contains("Found ") {
             found = screen.group();
             break;
         }
@@ -95,11 +95,11 @@ fn the_report_tells_estimates_and_what_the_truth_can_be() {
     for group in &company.seen.known_groups {
         let lines = report::lines(&company, *group);
         let text = format!("{lines:?}");
-        for words in ["budget", "usage", "quality floor", "market", "lock-in aversion", "word of mouth"] {
+        for words in ["budget", "usage", "required quality", "market", "lock-in aversion", "word of mouth"] {
             assert!(text.contains(words), "{group} {words}: {text}");
         }
-        assert_eq!(text.contains("smallest company"), group.is_enterprise());
-        // The ends of the budget are those of every other screen, rounded the same way.
+        assert_eq!(text.contains("smallest enterprise"), group.is_enterprise());
+        // The budget range agrees with other screens, including rounding.
         let budget = company.fit(*group).expect("a known group").budget.money().replace('$', "");
         assert!(text.contains(&budget), "{group} {budget}: {text}");
     }
@@ -119,7 +119,7 @@ fn a_group_leads_to_its_customers_and_unknown_ones_are_explained() {
     act(&mut screen, Action::Last, &company);
     let effects = act(&mut screen, Action::Open, &company);
     assert!(
-        matches!(&effects[..], [Effect::Complain(text)] if text.contains("not found yet")),
+        matches!(&effects[..], [Effect::Complain(text)] if text.contains("not been found yet")),
         "{effects:?}"
     );
     let effects = act(&mut screen, Action::StudyGroup, &company);

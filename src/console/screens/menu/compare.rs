@@ -1,4 +1,4 @@
-//! Runs side by side: curves of cash, and the figures they stand at.
+//! Comparison of runs: curves of cash, and current figures.
 
 use ratatui::layout::Rect;
 
@@ -12,8 +12,8 @@ use novamind_tui::canvas::{Align, Canvas, rows_of};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::spark::spark;
 
-/// Columns of the figures: title, width, side. A narrow window has the first of them: the curve in a row tells runs
-/// apart where colours do not.
+/// Columns: title, width, alignment. Narrow windows show the first ones; the curve in each row identifies
+/// runs without colors.
 const COLUMNS: [(&str, u16, Align); 8] = [
     ("", 3, Align::Left),
     ("run", 8, Align::Left),
@@ -25,7 +25,7 @@ const COLUMNS: [(&str, u16, Align); 8] = [
     ("mode", 8, Align::Left),
 ];
 
-/// Number of columns in a narrow window, and the width from which all are shown.
+/// Number of columns in narrow windows, and the minimum width for all.
 const NARROW: (usize, u16) = (5, 104);
 
 impl Menu {
@@ -48,7 +48,7 @@ impl Menu {
                 draw_curves(canvas, inside, &previews);
             }
         }
-        let inside = canvas.pane(below, "Where they stand", "", false);
+        let inside = canvas.pane(below, "Current figures", "", false);
         let mut rows = rows_of(inside);
         if let Some(head) = rows.next() {
             let titles = COLUMNS.map(|(title, ..)| title.to_owned());
@@ -99,19 +99,18 @@ fn draw_cells(canvas: &mut Canvas<'_>, row: Rect, cells: &[String; 8], role: imp
     }
 }
 
-/// Number of columns that are shown in a row.
 fn columns_in(row: Rect) -> usize {
     if row.width >= NARROW.1 { COLUMNS.len() } else { NARROW.0 }
 }
 
-/// What is left of a row behind the columns.
+/// Returns the area of a row right of the columns.
 fn rest_of(row: Rect) -> Rect {
     let shown = COLUMNS.iter().take(columns_in(row));
     let used = shown.map(|(_, width, _)| width + 1).sum::<u16>() + 2;
     Rect { x: row.x + used, width: row.width.saturating_sub(used + 1), ..row }
 }
 
-/// At most so many of the values, evenly taken, the last one among them.
+/// Returns at most `most` of the values, evenly spaced, including the last one.
 fn thinned(values: &[f64], most: usize) -> Vec<f64> {
     if values.len() <= most || most == 0 {
         return values.to_vec();

@@ -1,4 +1,4 @@
-//! The form of a new run.
+//! Form for a new run.
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
@@ -14,38 +14,33 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;
 use novamind_worker::request::Request;
 
-/// Fields of a new run.
 pub(super) struct RunForm {
     /// Names and descriptions of the scenarios.
     scenarios: Vec<(String, String)>,
     scenario: usize,
-    /// Days and starting cash of the chosen one in the chosen mode, where they can be read.
+    /// Days and starting cash of the selected scenario in the selected mode, if it can be read.
     terms: Option<(u32, f64)>,
     mode: usize,
     seed: Field,
     days: Field,
     cash: Field,
     participant: Field,
-    /// The row that is selected.
     pub(super) at: usize,
-    /// Why the run could not be started.
     pub(super) refused: Option<String>,
 }
 
-/// Rows of the form: name and what it means.
+/// Rows of the form: label and description.
 pub(super) const ROWS: [(&str, &str); 7] = [
-    ("Mode", "What the run is for; left and right change it. Fixed once the run starts."),
-    ("Scenario", "The rules of the world; left and right change it."),
-    ("Seed", "The same seed gives the same chance events."),
+    ("Mode", "Purpose of the run; left and right change it. Fixed once the run starts."),
+    ("Scenario", "Parameters of the market; left and right change it."),
+    ("Seed", "The same seed gives the same random events."),
     ("Days", "Last day of the run, at least 7. Published results ran for 500."),
     ("Starting cash", "Dollars on day 0."),
     ("Participant", "A label for the record; a baseline run needs one."),
-    ("Start", "enter starts the run"),
+    ("Start", "Start the run (enter)"),
 ];
 
-/// Column of the values.
 const VALUES: u16 = 17;
-/// Width of a field that is typed into.
 const FIELD: u16 = 18;
 
 impl RunForm {
@@ -70,7 +65,7 @@ impl RunForm {
         }
     }
 
-    /// Reads what the chosen scenario says about days and cash.
+    /// Reads days and cash of the selected scenario.
     pub(super) fn read_terms(&mut self, configuration: &Configuration) {
         let name = self.scenarios.get(self.scenario).map_or(DEFAULT_SCENARIO, |own| own.0.as_str());
         let own = Mode::OFFERED[self.mode] != Mode::Baseline;
@@ -78,7 +73,7 @@ impl RunForm {
         self.terms = scenario.and_then(|scenario| configuration.terms(&scenario, own)).ok();
     }
 
-    /// Whether the selected row is typed into.
+    /// Returns whether the selected row accepts text.
     pub(super) fn is_typing(&self) -> bool {
         (2..=5).contains(&self.at)
     }
@@ -118,7 +113,7 @@ impl RunForm {
         }
     }
 
-    /// Goes on to the next row, and from the last one starts the run if nothing is wrong.
+    /// Moves to the next row. In the last row, starts the run if the form is valid.
     pub(super) fn enter(&mut self) -> Vec<Effect> {
         if self.at < ROWS.len() - 1 {
             self.at += 1;
@@ -136,19 +131,18 @@ impl RunForm {
         }
     }
 
-    /// What is wrong with a row as it is typed.
     fn problem(&self, row: usize) -> Option<&'static str> {
         let whole = |field: &Field, least: f64| {
             let fits = |number: f64| number >= least && number.fract() == 0.0 && number < 9e15;
             field.text().trim().is_empty() || parse_number(field.text()).is_some_and(fits)
         };
         match row {
-            2 if !whole(&self.seed, 0.0) => Some("a whole number of at least 0"),
-            3 if !whole(&self.days, 7.0) => Some("a whole number of at least 7"),
+            2 if !whole(&self.seed, 0.0) => Some("enter a whole number of at least 0"),
+            3 if !whole(&self.days, 7.0) => Some("enter a whole number of at least 7"),
             4 if !self.cash.text().trim().is_empty()
                 && parse_number(self.cash.text()).is_none_or(|cash| cash <= 0.0) =>
             {
-                Some("dollars above 0, such as 500k")
+                Some("enter dollars above 0, such as 500k")
             }
             _ => None,
         }
@@ -186,7 +180,7 @@ impl RunForm {
             3 => or(&self.days, &standard(self.terms.map(|(days, _)| whole(days)))),
             4 => or(&self.cash, &standard(self.terms.map(|(_, cash)| dollars(cash)))),
             5 => or(&self.participant, "none"),
-            // What would be started: the mode is chosen at the top.
+            // The start row shows the selected mode.
             _ => (format!("a {} run", Mode::OFFERED[self.mode].id()), Role::Text),
         }
     }
@@ -194,7 +188,7 @@ impl RunForm {
     pub(super) fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let inside = canvas.pane(area, "New run", "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        // A blank row before the last one, where there is room for it.
+        // A blank row before the last one, if it fits.
         let gap = usize::from(inside.height as usize > ROWS.len() + 6);
         for at in 0..ROWS.len() {
             let y = inside.y + (at + if at + 1 == ROWS.len() { gap } else { 0 }) as u16;
@@ -254,12 +248,12 @@ fn whole(days: u32) -> String {
     novamind_base::notation::grouped(f64::from(days), 0)
 }
 
-/// What a field that is left empty stands for.
+/// Returns the placeholder of an empty field.
 fn standard(value: Option<String>) -> String {
     value.map_or("scenario default".to_owned(), |value| format!("scenario default: {value}"))
 }
 
-/// What a mode allows.
+/// Returns the permissions of a mode.
 fn allows(mode: Mode) -> &'static str {
     match mode {
         Mode::Baseline => {

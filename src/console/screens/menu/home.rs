@@ -1,4 +1,4 @@
-//! The first page: what can be done, and how the last run stands.
+//! Start page: choices, and the state of the last run.
 
 use ratatui::layout::Rect;
 
@@ -10,7 +10,6 @@ use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 
-/// Choices of the first page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum HomeEntry {
     Continue,
@@ -25,11 +24,11 @@ pub(super) enum HomeEntry {
     Quit,
 }
 
-/// Width from which the last run stands beside the choices.
+/// Minimum width for the last run next to the choices.
 const WIDE: u16 = 76;
 
 impl Menu {
-    /// What the page offers; nothing while the runs are being looked for, for they decide what comes first.
+    /// Returns the choices of the page; empty while runs are listed, because they determine the first choice.
     pub(super) fn choices(&self) -> Vec<(HomeEntry, &'static str, String)> {
         let mut choices = Vec::new();
         if self.runs.is_none() {
@@ -40,8 +39,8 @@ impl Menu {
             choices.push((HomeEntry::Continue, "Continue", short(run)));
         }
         let words = match self.practice() {
-            Some(_) => "goes on in your practice run",
-            None => "New here? A company for practice",
+            Some(_) => "Continues the practice run",
+            None => "New here? A practice company",
         };
         let tour = (HomeEntry::Tour, "Tour", words.to_owned());
         let known = matches!(self.runs, Some(Ok(_)));
@@ -56,16 +55,16 @@ impl Menu {
             choices.push((HomeEntry::Runs, "Runs", text));
         }
         if count > 1 {
-            choices.push((HomeEntry::Compare, "Compare runs", "two or more side by side".to_owned()));
+            choices.push((HomeEntry::Compare, "Compare runs", "Two or more side by side".to_owned()));
         }
-        choices.push((HomeEntry::Paper, "Paper table", "published results, and yours".to_owned()));
+        choices.push((HomeEntry::Paper, "Paper table", "Published results and yours".to_owned()));
         if !newcomer {
             choices.push(tour);
         }
-        choices.push((HomeEntry::Lessons, "Lessons", "one idea each, 12 to 25 minutes".to_owned()));
-        choices.push((HomeEntry::Handout, "Hand-out", "the file you got, such as S07.nm".to_owned()));
-        choices.push((HomeEntry::Class, "Class", "what came back of your students".to_owned()));
-        choices.push((HomeEntry::Quit, "Quit", "everything confirmed is saved".to_owned()));
+        choices.push((HomeEntry::Lessons, "Lessons", "One idea each, 12 to 25 minutes".to_owned()));
+        choices.push((HomeEntry::Handout, "Handout", "Your file, such as S07.nm".to_owned()));
+        choices.push((HomeEntry::Class, "Class", "Your students' results".to_owned()));
+        choices.push((HomeEntry::Quit, "Quit", "Confirmed actions are saved".to_owned()));
         choices
     }
 
@@ -83,7 +82,7 @@ impl Menu {
         }
     }
 
-    /// Draws the choices; returns the rows they took.
+    /// Draws the choices; returns the number of rows.
     fn draw_choices(&self, canvas: &mut Canvas<'_>, area: Rect) -> u16 {
         let choices = self.choices();
         let count = choices.len() as u16;
@@ -133,7 +132,6 @@ impl Menu {
     }
 }
 
-/// A run with its figures and the curve of its cash.
 pub(super) fn draw_run(
     canvas: &mut Canvas<'_>,
     area: Rect,
@@ -162,15 +160,15 @@ pub(super) fn draw_run(
 }
 
 fn draw_welcome(canvas: &mut Canvas<'_>, area: Rect) {
-    let inside = canvas.pane(area, "What this is", "", false);
+    let inside = canvas.pane(area, "About", "", false);
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
     let parts = [
         "You run a company that sells an AI subscription. It starts with a million dollars and no customers.",
-        "Once a week you set prices, models, quotas, capacity, advertising and development, answer companies, and \
-         forecast your cash. Then seven days run.",
-        "Customers, rivals and the economy answer. What you can know is on the screens and in the tables.",
-        "Your score is the cash after the last day. Below zero it ends.",
-        "Nothing you confirm is lost: quit whenever you like.",
+        "Once a week you set prices, models, quotas, capacity, advertising and development, answer enterprises, and \
+         forecast your cash. Then seven days are simulated.",
+        "Customers, competitors and the economy react. All you can know is on the screens and in the tables.",
+        "Your score is the cash after the last day. If cash falls below zero, the run ends.",
+        "Nothing you confirm is lost: quit at any time.",
     ];
     let text = parts.join("\n\n");
     for (row, line) in rows_of(inside).zip(wrapped(&text, inside.width as usize)) {
@@ -178,7 +176,6 @@ fn draw_welcome(canvas: &mut Canvas<'_>, area: Rect) {
     }
 }
 
-/// A run in a few words.
 fn short(run: &RunSummary) -> String {
     format!("day {} of {} · {}", run.day, run.days, dollars(run.cash))
 }

@@ -1,4 +1,4 @@
-//! The lessons: minutes and titles, what one learns beside them; enter begins one.
+//! List of lessons with minutes, titles and learning goals.
 
 use std::sync::Arc;
 
@@ -16,23 +16,20 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_row;
 use novamind_worker::request::Request;
 
-/// Width from which what one learns stands beside the list.
 const WIDE: u16 = 76;
 
-/// The lessons that a person has.
 #[derive(Default)]
 pub(super) struct LessonList {
     lessons: Vec<ListedLesson>,
 }
 
-/// A lesson of the list: its name, and the lesson or what is wrong with its file.
+/// A lesson: its name, and its definition or the error in its file.
 struct ListedLesson {
     name: String,
     lesson: Result<Arc<Lesson>, String>,
 }
 
 impl LessonList {
-    /// Reads the lessons.
     pub(super) fn of(configuration: &Configuration) -> LessonList {
         let read = |name: String| {
             let lesson = Lesson::named(&name, configuration).map(Arc::new).map_err(|error| error.to_string());
@@ -41,12 +38,10 @@ impl LessonList {
         LessonList { lessons: configuration.lessons().into_iter().map(read).collect() }
     }
 
-    /// How many there are.
     pub(super) fn count(&self) -> usize {
         self.lessons.len()
     }
 
-    /// Begins one of them.
     pub(super) fn begin(&self, selected: usize) -> Vec<Effect> {
         match self.lessons.get(selected).map(|own| &own.lesson) {
             Some(Ok(lesson)) => {
@@ -59,7 +54,7 @@ impl LessonList {
         }
     }
 
-    /// Draws the list, and what one learns in the selected one.
+    /// Draws the list and the learning goal of the selected lesson.
     pub(super) fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, selected: usize) {
         let beside = area.width >= WIDE;
         let (above, below) = if beside {
@@ -95,7 +90,6 @@ impl LessonList {
     }
 }
 
-/// What one learns in a lesson.
 fn draw_lesson(canvas: &mut Canvas<'_>, area: Rect, own: &ListedLesson) {
     if area.height < 3 {
         return;

@@ -1,4 +1,4 @@
-//! The start menu: continue, a new run, the runs, comparisons, published results, the tour, quit.
+//! Start menu: continue, new run, runs, comparison, published results, tour, quit.
 
 mod class;
 mod compare;
@@ -41,37 +41,32 @@ use novamind_worker::request::Request;
 use path_form::{PathForm, PathWanted};
 use runs::Asked;
 
-/// Rows of a window below which no row is left blank above the page.
+/// Window height below which the page has no blank row above it.
 const LOW: u16 = 26;
 
-/// Rows of a page, to walk over.
 const PAGE: u16 = 10;
 
-/// How runs went, by their names; none while it is being read.
+/// Previews of runs by name; `None` while a preview is read.
 type Previews = BTreeMap<String, Option<Result<RunPreview, String>>>;
 
 /// The start menu.
 pub struct Menu {
     page: MenuPage,
     runs: Option<Result<Vec<RunSummary>, String>>,
-    /// Place on a page that is a plain list.
+    /// Index of the selection on list pages.
     selected: usize,
     form: RunForm,
     table: Table,
-    /// Runs to be compared, in the order in which they were marked.
+    /// Runs marked for comparison, in order of marking.
     marked: Vec<String>,
     previews: Previews,
-    /// Runs whose previews are read.
     reading: Vec<Pending<PreviewQuestion>>,
-    /// What is asked about before it is done.
     asked: Option<Asked>,
-    /// What was to be done on the first page before the runs were known: what it offers depends on them.
+    /// Actions received before the runs were listed. The choices of the start page depend on the runs.
     early: Vec<Action>,
-    /// Lessons, as they were read when their page was opened.
+    /// Lessons, read when their page was opened.
     lessons: LessonList,
-    /// The path that is asked for.
     path: PathForm,
-    /// The class that was opened.
     class: Option<Box<ClassPage>>,
     configuration: Configuration,
 }
@@ -89,7 +84,7 @@ enum MenuPage {
 }
 
 impl Menu {
-    /// The menu, before the runs are known.
+    /// Creates the menu before the runs are known.
     pub fn new(configuration: &Configuration) -> Menu {
         Menu {
             page: MenuPage::Home,
@@ -109,18 +104,18 @@ impl Menu {
         }
     }
 
-    /// Takes the list of runs; asks how the last one went, and does what was waiting for the list.
+    /// Stores the list of runs, requests the preview of the last one, and runs the delayed actions.
     pub fn take(&mut self, runs: Result<Vec<RunSummary>, String>) -> Vec<Effect> {
         let choice = self.chosen_choice();
         self.runs = Some(runs);
         if self.page == MenuPage::Home {
-            // The same choice, wherever it stands now.
+            // Select the same choice at its new position.
             let same = self.choices().iter().position(|(own, ..)| Some(*own) == choice);
             self.selected = same.unwrap_or(0);
         }
         let known: Vec<String> = self.list().iter().map(|run| run.id.clone()).collect();
         self.marked.retain(|id| known.contains(id));
-        // What was played since may have gone further.
+        // Runs may have progressed since.
         self.previews.clear();
         self.reading.clear();
         self.asked = None;
@@ -140,7 +135,7 @@ impl Menu {
         self.choices().get(self.selected).map(|choice| choice.0)
     }
 
-    /// Takes how runs went, as far as that was read.
+    /// Collects previews that have arrived.
     pub fn take_answers(&mut self) {
         for (run, preview) in self.reading.iter_mut().filter_map(Pending::try_take) {
             self.previews.insert(run.id, Some(preview.map_err(|refusal| refusal.message)));
@@ -148,9 +143,9 @@ impl Menu {
         self.reading.retain(Pending::is_waiting);
     }
 
-    /// A run could not be started or opened; what can be done instead is asked.
+    /// Reports that a run could not be started or opened, and asks what to do instead.
     pub fn refused(&mut self, problem: String, instead: Option<Instead>) {
-        // What somebody has to agree to is no refusal.
+        // A request for consent is not an error.
         let refused = (!matches!(instead, Some(Instead::Agree(..)))).then(|| problem.clone());
         self.asked = instead.map(|instead| match instead {
             Instead::Agree(new) => Asked::Agree(new, Agreement::new(problem)),
@@ -160,14 +155,14 @@ impl Menu {
         self.form.refused = refused;
     }
 
-    /// Shows a class that was read.
+    /// Shows the results of a class.
     pub fn show_class(&mut self, class: CollectedClass, shown: Shown) {
         self.early.clear();
         self.class = Some(Box::new(ClassPage::new(class, shown)));
         self.page = MenuPage::Class;
     }
 
-    /// Asks how a run went, unless that is known or asked already.
+    /// Requests the preview of a run, unless it is known or requested.
     fn read(&mut self, id: &str) -> Option<Effect> {
         if self.previews.contains_key(id) {
             return None;
@@ -189,7 +184,7 @@ impl Menu {
         self.list().iter().find(|run| run.ended.is_none() && run.problem.is_none())
     }
 
-    /// The run in which the tour was begun, if it goes on.
+    /// Returns the unfinished run of the tour, if there is one.
     pub fn practice(&self) -> Option<&str> {
         let begun = |run: &&RunSummary| {
             run.scenario == tour::scenario()
@@ -200,7 +195,7 @@ impl Menu {
         self.list().iter().find(begun).map(|run| run.id.as_str())
     }
 
-    /// Last place of a page that is a plain list.
+    /// Returns the last index on list pages.
     fn last(&self) -> usize {
         let rows = match self.page {
             MenuPage::Home => self.choices().len(),
@@ -212,7 +207,7 @@ impl Menu {
         rows.saturating_sub(1)
     }
 
-    /// Scopes of the page.
+    /// Returns the scopes of the page.
     pub fn scopes(&self) -> Vec<Scope> {
         match self.page {
             _ if matches!(self.asked, Some(Asked::Agree(..))) => vec![Scope::Visit, Scope::List],
@@ -226,7 +221,7 @@ impl Menu {
         }
     }
 
-    /// Actions worth showing.
+    /// Returns the footer actions.
     pub fn hints(&self) -> Vec<Action> {
         match self.page {
             _ if matches!(self.asked, Some(Asked::Agree(..))) => vec![Action::Agree, Action::Decline],
@@ -265,7 +260,7 @@ impl Menu {
         (self.page, self.selected) = (MenuPage::Home, 0);
     }
 
-    /// Does an action.
+    /// Runs an action.
     pub fn act(&mut self, action: Action) -> Vec<Effect> {
         if self.asked.is_some() {
             return self.answer(action);
@@ -321,7 +316,7 @@ impl Menu {
     fn open_latest(&self) -> Vec<Effect> {
         match self.latest() {
             Some(run) => vec![Effect::Request(Request::Open(run.id.clone(), Access::Write))],
-            None => vec![Effect::Complain("there is no unfinished run; n starts one".to_owned())],
+            None => vec![Effect::Complain("No unfinished run. Start one with n.".to_owned())],
         }
     }
 
@@ -339,7 +334,7 @@ impl Menu {
             Some(HomeEntry::Runs) => return self.open_runs(),
             Some(HomeEntry::Compare) => {
                 let mut effects = self.open_runs();
-                effects.push(Effect::Say("mark two or more, then compare".to_owned()));
+                effects.push(Effect::Say("Mark two or more, then compare".to_owned()));
                 return effects;
             }
             Some(HomeEntry::Paper) => (self.page, self.selected) = (MenuPage::Paper, 0),
@@ -359,7 +354,7 @@ impl Menu {
         self.read_chosen()
     }
 
-    /// Takes a typed key.
+    /// Handles a typed key.
     pub fn key(&mut self, key: &KeyEvent) -> Vec<Effect> {
         match self.page {
             MenuPage::NewRun => self.form.key(key),
@@ -375,7 +370,7 @@ impl Menu {
         Vec::new()
     }
 
-    /// Takes pasted text.
+    /// Handles pasted text.
     pub fn paste(&mut self, text: &str) {
         match self.page {
             MenuPage::NewRun => self.form.paste(text),
@@ -385,7 +380,7 @@ impl Menu {
         }
     }
 
-    /// A row was clicked: once selects, twice opens.
+    /// Handles a click on a row: the first selects it, the second opens it.
     pub fn click(&mut self, row: usize) -> Vec<Effect> {
         if self.asked.is_some() {
             return Vec::new();
@@ -410,7 +405,7 @@ impl Menu {
         }
     }
 
-    /// Draws the page below the name of the program.
+    /// Draws the page below the program name.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
         if let (MenuPage::Class, Some(page)) = (self.page, &self.class) {
             page.draw(canvas, area);
@@ -422,7 +417,7 @@ impl Menu {
         canvas.aligned(name, version, Role::Dim, Align::Right);
         let line = Rect { x: name.x + 3, y: name.y + 1, width: name.width.saturating_sub(3), ..name };
         canvas.text(line, "one company, five hundred days, every decision yours", Role::Dim);
-        // The last blank row goes to the page where rows are few.
+        // Low windows give the last blank row to the page.
         let above = if area.height < LOW { 3 } else { 4 };
         let body = Rect {
             x: area.x + 2,

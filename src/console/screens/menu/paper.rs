@@ -1,4 +1,4 @@
-//! Published results, ranked, with the finished runs of this machine among them.
+//! Published results, ranked, together with the finished runs on this machine.
 
 use ratatui::layout::Rect;
 
@@ -14,7 +14,6 @@ use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_row;
 
-/// A line of the table.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Ranked {
     name: String,
@@ -23,7 +22,7 @@ pub(super) struct Ranked {
     own: bool,
 }
 
-/// All results, the best first.
+/// Returns all results, best first.
 pub(super) fn ranked(runs: &[RunSummary]) -> Vec<Ranked> {
     let paper = published();
     let baseline = Ranked {
@@ -51,7 +50,7 @@ pub(super) fn ranked(runs: &[RunSummary]) -> Vec<Ranked> {
     results
 }
 
-/// What keeps a run from being ranked; none of a run that has no score.
+/// Returns the reasons why a run is not ranked; `None` if the run has no score.
 fn obstacles(run: &RunSummary) -> Option<Vec<Obstacle>> {
     let has_score = matches!(run.ended, Some(Ended::Horizon | Ended::Bankruptcy | Ended::Lesson));
     (has_score && run.problem.is_none()).then(|| RunTerms::of_summary(run).obstacles())
@@ -78,7 +77,7 @@ impl Menu {
         }
     }
 
-    /// Which of the runs are among the results, and why others are not.
+    /// Explains which runs are ranked, and why others are not.
     fn yours(&self, ranked: usize) -> String {
         let finished: Vec<Vec<Obstacle>> = self.list().iter().filter_map(obstacles).collect();
         match (ranked, not_ranked_in_words(&finished)) {
@@ -89,10 +88,10 @@ impl Menu {
     }
 }
 
-/// What the published results are.
+/// Returns the source of the published results.
 fn source() -> String {
     let bound = compact(published().estimated_upper_bound);
-    format!("{}, best cash of three runs each. Estimated upper bound ${bound}.", published_terms())
+    format!("{}, best cash of three runs each. Estimated upper bound: ${bound}.", published_terms())
 }
 
 fn draw_result(canvas: &mut Canvas<'_>, row: Rect, at: usize, result: &Ranked, most: f64) {
@@ -141,7 +140,7 @@ mod tests {
         assert_eq!(why, [Some(0), Some(1), Some(1), Some(1), None, Some(0)]);
         assert_eq!((results[0].name.as_str(), results[0].own), ("You · rich", true));
         assert_eq!(results.iter().filter(|result| result.own).count(), 2);
-        let ruin = results.iter().find(|result| result.name == "You · ruin").expect("the bankrupt one");
+        let ruin = results.iter().find(|result| result.name == "You · ruin").expect("the bankrupt run");
         assert!(ruin.cash.abs() < 1e-9);
         assert!(results.is_sorted_by(|left, right| left.cash >= right.cash));
     }

@@ -1,4 +1,4 @@
-//! A page that asks for one path: the folder of a class, or the hand-out of a student.
+//! A page that asks for a path: the folder of a class, or a student's handout.
 
 use std::path::PathBuf;
 
@@ -13,15 +13,11 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;
 use novamind_worker::request::Request;
 
-/// Widest text that reads well.
 const WIDEST: u16 = 100;
 
-/// What a path leads to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum PathWanted {
-    /// The folder of a class.
     Class,
-    /// The hand-out of a student.
     Handout,
 }
 
@@ -29,36 +25,34 @@ impl PathWanted {
     fn title(self) -> &'static str {
         match self {
             PathWanted::Class => "Class",
-            PathWanted::Handout => "Hand-out",
+            PathWanted::Handout => "Handout",
         }
     }
 
     fn asked(self) -> &'static str {
         match self {
-            PathWanted::Class => "Folder of the class",
-            PathWanted::Handout => "File of the hand-out",
+            PathWanted::Class => "Class folder",
+            PathWanted::Handout => "Handout file",
         }
     }
 
     fn explained(self) -> &'static str {
         match self {
             PathWanted::Class => {
-                "The folder that `novamind class new` has made. `novamind class collect DIR PLACES` collects what came back; this \
-                 page shows what was collected last: ranking, curves, decisions, guesses, pitfalls."
+                "The folder that `novamind class new` created. `novamind class collect DIR PLACES` collects the submissions. This \
+                 page shows the last collection: ranking, curves, decisions, guesses, pitfalls."
             }
             PathWanted::Handout => {
-                "The file that your instructor gave you, such as S07.nm. Enter begins what it holds; later it goes on with the try \
-                 or the part that was played last and is not over. From then on the start menu shows your runs only."
+                "The file that your instructor gave you, such as S07.nm. Enter starts it, or continues the last unfinished try or \
+                 part. From then on the start menu shows your runs only."
             }
         }
     }
 }
 
-/// A page that asks for one path.
 pub(super) struct PathForm {
     wanted: PathWanted,
     field: Field,
-    /// Why what was typed could not be opened.
     pub(super) refused: Option<String>,
 }
 
@@ -77,12 +71,11 @@ impl PathForm {
         self.field.insert(text.trim());
     }
 
-    /// Opens what was typed.
     pub(super) fn enter(&self) -> Vec<Effect> {
-        // Terminals put dropped files into quotes.
+        // Terminals quote dropped files.
         let typed = self.field.text().trim().trim_matches(['\'', '"']);
         if typed.is_empty() {
-            return vec![Effect::Complain(format!("type a path: {}", self.wanted.asked().to_lowercase()))];
+            return vec![Effect::Complain(format!("Type a path: {}", self.wanted.asked().to_lowercase()))];
         }
         let path = PathBuf::from(typed);
         vec![Effect::Request(match self.wanted {

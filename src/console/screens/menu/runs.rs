@@ -1,4 +1,4 @@
-//! The list of runs: open, compare, give up, delete.
+//! List of runs: open, compare, give up, delete.
 
 use ratatui::layout::Rect;
 
@@ -21,24 +21,22 @@ use novamind_tui::widgets::{Axis, Cell, Column, Line, Side, Unit, chart};
 use novamind_worker::message::Instead;
 use novamind_worker::request::{Recorded, Request};
 
-/// Something that cannot be taken back and is asked about first.
+/// An action that needs confirmation because it cannot be undone.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Asked {
     GiveUp(String),
     Delete(String),
-    /// What can be done with a run that does not open, and why it does not.
+    /// An alternative for a run that does not open, with the reason.
     Instead(Instead, String),
-    /// Whether a participant agrees to a text, before their run begins.
+    /// Whether a participant agrees to a text before their run starts.
     Agree(Box<NewRun>, Agreement),
 }
 
-/// State of a run that a server plays at this moment; who opens it is asked whether to watch.
+/// State of a run that a server is playing. Opening it asks whether to watch.
 const BY_PROGRAM: &str = "played by a program";
 
-/// Most runs that are compared.
 pub(super) const MOST_COMPARED: usize = 6;
 
-/// Columns of the list.
 pub(super) fn columns() -> Vec<Column> {
     vec![
         Column::words("run").at_most(10),
@@ -88,7 +86,6 @@ impl Menu {
         self.table.selected().and_then(|at| self.list().get(at))
     }
 
-    /// Does an action of the list of runs.
     pub(super) fn act_on_runs(&mut self, action: Action) -> Vec<Effect> {
         if self.table.act(action, super::PAGE) {
             return self.read_chosen();
@@ -107,7 +104,7 @@ impl Menu {
             Action::EndRun => {
                 match self.chosen().filter(|run| run.ended.is_none() && run.problem.is_none()) {
                     Some(run) => self.asked = Some(Asked::GiveUp(run.id.clone())),
-                    None => return vec![Effect::Complain("this run is over already".to_owned())],
+                    None => return vec![Effect::Complain("This run is already over".to_owned())],
                 }
             }
             Action::DeleteRun => self.asked = self.chosen().map(|run| Asked::Delete(run.id.clone())),
@@ -117,7 +114,7 @@ impl Menu {
         Vec::new()
     }
 
-    /// Plays a run again from its first day.
+    /// Opens the playback of a run.
     pub(super) fn replay(&self, run: Option<&RunSummary>) -> Vec<Effect> {
         let replay = |run: &RunSummary| {
             let recorded = Recorded::Run(run.id.clone());
@@ -146,7 +143,7 @@ impl Menu {
         effects
     }
 
-    /// Asks for what is not known yet of the marked runs.
+    /// Requests the missing previews of the marked runs.
     fn read_marked(&mut self) -> Vec<Effect> {
         let marked = self.marked.clone();
         marked.into_iter().filter_map(|id| self.read(&id)).collect()
@@ -154,7 +151,7 @@ impl Menu {
 
     fn compare(&mut self) -> Vec<Effect> {
         if self.marked.len() < 2 {
-            return vec![Effect::Complain("mark two or more runs first".to_owned())];
+            return vec![Effect::Complain("Mark two or more runs first".to_owned())];
         }
         let effects = self.read_marked();
         self.page = super::MenuPage::Compare;
@@ -166,7 +163,7 @@ impl Menu {
         id.and_then(|id| self.read(&id)).into_iter().collect()
     }
 
-    /// Answers the question about a run.
+    /// Handles the answer to a confirmation.
     pub(super) fn answer(&mut self, action: Action) -> Vec<Effect> {
         match (action, self.asked.take()) {
             (Action::Confirm, Some(Asked::GiveUp(id))) => vec![Effect::Request(Request::EndRun(id))],
@@ -194,7 +191,7 @@ impl Menu {
                 }
             },
             (Action::Decline | Action::Close, Some(Asked::Agree(..))) => {
-                vec![Effect::Say("no run was started; nothing was recorded".to_owned())]
+                vec![Effect::Say("No run was started, and nothing was recorded".to_owned())]
             }
             (action, Some(Asked::Agree(new, mut text))) => {
                 text.scroll(action);
@@ -233,7 +230,7 @@ impl Menu {
         })
     }
 
-    /// The question what to do with a run that does not open, over any page.
+    /// Draws the question about a run that does not open, over any page.
     pub(super) fn draw_instead(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let (instead, problem) = match &self.asked {
             Some(Asked::Instead(instead, problem)) => (instead, problem),
@@ -244,13 +241,13 @@ impl Menu {
             _ => return,
         };
         let (title, offer) = match instead {
-            // It is asked about as a text.
+            // Consent is shown as a text.
             Instead::Agree(_) => return,
             Instead::Watch(_) => {
-                ("To read only", "Watch it from here, read-only? What is played elsewhere appears here.")
+                ("Read-only", "Watch it here, read-only? Changes made elsewhere appear here.")
             }
             Instead::Rescue(_) => {
-                ("Damaged", "Open the intact part as a branch? The damaged run is not touched.")
+                ("Damaged", "Recover the undamaged part as a branch? The damaged run is not changed.")
             }
         };
         let width = 76.min(area.width);
@@ -263,7 +260,7 @@ impl Menu {
         canvas.clear(own, Role::Text);
         let inside = canvas.pane(own, title, "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        // The question must be seen, however long the reason is.
+        // The question stays visible even if the reason is long.
         let room = inside.height.saturating_sub(1) as usize;
         let skipped = lines.len().saturating_sub(room);
         let shown = lines.iter().enumerate().skip(if room < lines.len() { skipped } else { 0 });
@@ -286,11 +283,11 @@ impl Menu {
         self.table.draw(canvas, inside, self.asked.is_none(), 0);
         if self.list().is_empty() {
             let row = Rect { y: inside.y + 1, height: 1.min(inside.height.saturating_sub(1)), ..inside };
-            canvas.text(row, "No runs left; close this page and start one.", Role::Dim);
+            canvas.text(row, "No runs left. Close this page and start one.", Role::Dim);
         }
         match (self.question(), self.chosen()) {
             (Some((title, text)), _) => {
-                // Over the list, where there is no room for a pane of its own.
+                // Over the list if there is no room for a separate pane.
                 let place = if for_detail > 0 { below } else { area };
                 canvas.clear(place, Role::Text);
                 let inside = canvas.pane(place, title, "", true);
@@ -307,7 +304,7 @@ impl Menu {
     }
 }
 
-/// How far a run has come.
+/// Returns the progress of a run.
 pub(super) fn state(run: &RunSummary) -> String {
     match run.ended {
         _ if run.problem.is_some() => "cannot be read".to_owned(),
@@ -319,12 +316,10 @@ pub(super) fn state(run: &RunSummary) -> String {
     }
 }
 
-/// A moment to the minute.
 fn minute(at: &str) -> String {
     at.get(..16).unwrap_or("").replace('T', " ")
 }
 
-/// Figures of a run.
 pub(super) fn facts(
     run: &RunSummary,
     preview: Option<&Result<RunPreview, String>>,
@@ -362,7 +357,7 @@ pub(super) fn facts(
     facts
 }
 
-/// The curve of a run's cash, or why there is none.
+/// Draws the cash curve of a run, or the reason why there is none.
 pub(super) fn draw_preview(
     canvas: &mut Canvas<'_>,
     area: Rect,
@@ -371,14 +366,14 @@ pub(super) fn draw_preview(
 ) {
     match preview {
         Some(Ok(preview)) if preview.cash.len() > 1 => draw_curves(canvas, area, &[(0, preview)]),
-        Some(Ok(_)) => canvas.text(area, "no week has run yet", Role::Dim),
+        Some(Ok(_)) => canvas.text(area, "No week has been simulated yet", Role::Dim),
         Some(Err(problem)) => canvas.text(area, &format!("! {problem}"), Role::Bad),
         None if unreadable => {}
         None => canvas.text(area, "reading the run …", Role::Dim),
     }
 }
 
-/// Curves of cash over days, each in the colour of its number.
+/// Draws curves of cash by day, in the color of each number.
 pub(super) fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, previews: &[(usize, &RunPreview)]) {
     let points =
         |preview: &RunPreview| preview.cash.iter().map(|(day, cash)| (f64::from(*day), *cash)).collect();
@@ -392,7 +387,7 @@ pub(super) fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, previews: &[(usiz
     chart(canvas, area, &lines, &x, &Side { unit: Unit::Dollars, holds: zero });
 }
 
-/// A preview that is known.
+/// Returns a preview that has arrived.
 pub(super) fn known<'a>(previews: &'a Previews, id: &str) -> Option<&'a RunPreview> {
     previews.get(id)?.as_ref()?.as_ref().ok()
 }

@@ -1,4 +1,4 @@
-//! What the start menu does and shows.
+//! Tests of the start menu.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
@@ -9,7 +9,6 @@ use novamind_record::trajectory::record::Ended;
 use novamind_session::{Access, Goal};
 use novamind_worker::request::{Recorded, Request};
 
-/// An unfinished run.
 pub(crate) fn summary(id: &str) -> RunSummary {
     RunSummary {
         id: id.to_owned(),
@@ -82,10 +81,10 @@ fn a_newcomer_is_offered_the_tour_first() {
     let mut menu = menu(Vec::new());
     let screen = shown(&menu, 80, 23);
     assert!(
-        screen.contains("› Tour") && screen.contains("New here?") && screen.contains("What this is"),
+        screen.contains("› Tour") && screen.contains("New here?") && screen.contains("About"),
         "{screen}"
     );
-    assert!(screen.contains("it ends."), "the rule of the game is told to its end: {screen}");
+    assert!(screen.contains("the run ends."), "the rules are shown completely: {screen}");
     assert!(!screen.contains("Continue") && !screen.contains("Runs"), "{screen}");
     assert!(matches!(menu.act(Action::Open)[..], [Effect::StartTour]));
 }
@@ -127,7 +126,7 @@ fn a_key_that_comes_before_the_runs_are_known_means_what_is_shown_then() {
         let screen = shown(&menu, 80, 23);
         assert!(screen.contains("looking for runs") && !screen.contains("New run"), "{screen}");
         for key in keys {
-            assert!(menu.act(*key).is_empty(), "nothing is done yet");
+            assert!(menu.act(*key).is_empty(), "actions are delayed");
         }
         let effects = menu.take(Ok(runs));
         (menu, effects)
@@ -145,7 +144,7 @@ fn a_key_that_comes_before_the_runs_are_known_means_what_is_shown_then() {
     let (menu, _) = hurried(&[Action::Down, Action::Open], vec![summary("aaaa0001")]);
     assert!(menu.page == MenuPage::NewRun);
     let (menu, effects) = hurried(&[Action::Open, Action::NewRun], vec![summary("aaaa0001")]);
-    assert!(menu.page == MenuPage::NewRun && effects.len() == 1, "what came last counts");
+    assert!(menu.page == MenuPage::NewRun && effects.len() == 1, "the last action counts");
 }
 
 #[test]
@@ -169,7 +168,7 @@ fn runs_are_given_up_and_deleted_only_after_a_question() {
         assert!(menu.act(Action::Cancel).is_empty() && menu.asked.is_none());
     }
     menu.act(Action::DeleteRun);
-    assert!(menu.act(Action::Down).is_empty() && menu.asked.is_some(), "only an answer counts");
+    assert!(menu.act(Action::Down).is_empty() && menu.asked.is_some(), "only an answer is accepted");
     assert!(
         matches!(&menu.act(Action::Confirm)[..], [Effect::Request(Request::DeleteRun(id))] if id == "aaaa0001")
     );
@@ -178,7 +177,7 @@ fn runs_are_given_up_and_deleted_only_after_a_question() {
         matches!(&menu.act(Action::Confirm)[..], [Effect::Request(Request::EndRun(id))] if id == "aaaa0001")
     );
     menu.act(Action::Down);
-    assert!(matches!(&menu.act(Action::EndRun)[..], [Effect::Complain(_)]), "it is over already");
+    assert!(matches!(&menu.act(Action::EndRun)[..], [Effect::Complain(_)]), "the run is already over");
 }
 
 #[test]
@@ -189,7 +188,7 @@ fn marked_runs_are_compared() {
     menu.act(Action::MarkRun);
     menu.act(Action::MarkRun);
     menu.act(Action::MarkRun);
-    assert_eq!(menu.marked, ["aaaa0001", "bbbb0002"], "what cannot be read cannot be marked");
+    assert_eq!(menu.marked, ["aaaa0001", "bbbb0002"], "unreadable runs cannot be marked");
     assert!(shown(&menu, 80, 23).contains("● bbbb0002"));
     menu.act(Action::CompareRuns);
     for (width, figure) in [(80, "▁"), (120, "$812,345")] {
@@ -209,7 +208,7 @@ fn the_list_is_filtered_and_sorted() {
     menu.act(Action::Filter);
     assert_eq!(menu.scopes(), [Scope::Field]);
     type_text(&mut menu, "finished q");
-    assert_eq!(menu.chosen(), None, "q is typed, not quit");
+    assert_eq!(menu.chosen(), None, "q is typed and does not quit");
     menu.key(&KeyEvent::new(KeyCode::Backspace, KeyModifiers::NONE));
     menu.key(&KeyEvent::new(KeyCode::Backspace, KeyModifiers::NONE));
     menu.act(Action::Commit);
@@ -225,9 +224,9 @@ fn the_form_says_what_is_wrong_while_it_is_typed() {
     menu.act(Action::NewRun);
     menu.form.at = 3;
     type_text(&mut menu, "3");
-    assert!(shown(&menu, 80, 23).contains("! a whole number of at least 7"));
+    assert!(shown(&menu, 80, 23).contains("! enter a whole number of at least 7"));
     menu.form.at = ROWS.len() - 1;
-    assert!(menu.act(Action::Open).is_empty() && menu.form.at == 3, "the form goes to what is wrong");
+    assert!(menu.act(Action::Open).is_empty() && menu.form.at == 3, "the form selects the invalid row");
     type_text(&mut menu, "0");
     menu.form.at = 0;
     menu.act(Action::Left);
@@ -290,14 +289,14 @@ fn hand_outs_and_classes_are_asked_for_by_their_paths() {
     menu.act(Action::Up);
     menu.act(Action::Open);
     assert_eq!((menu.page, menu.scopes()), (MenuPage::Path, vec![Scope::Field]));
-    assert!(matches!(&menu.act(Action::Commit)[..], [Effect::Complain(_)]), "nothing is typed");
+    assert!(matches!(&menu.act(Action::Commit)[..], [Effect::Complain(_)]), "no path is typed");
     type_text(&mut menu, "'~/q class'");
     match &menu.act(Action::Commit)[..] {
         [Effect::Request(Request::ReadClass(path, _))] => assert_eq!(path, std::path::Path::new("~/q class")),
         other => panic!("{other:?}"),
     }
-    menu.refused("~/q class holds no class".to_owned(), None);
-    assert!(shown(&menu, 80, 23).contains("! ~/q class holds no class"));
+    menu.refused("~/q class is not a class".to_owned(), None);
+    assert!(shown(&menu, 80, 23).contains("! ~/q class is not a class"));
     menu.act(Action::Discard);
     assert!(menu.page == MenuPage::Home);
     menu.act(Action::Last);
@@ -317,7 +316,7 @@ fn the_paper_table_shows_both_kinds_of_results() {
     menu.page = MenuPage::Paper;
     let screen = shown(&menu, 120, 39);
     for part in
-        ["Rule-based baseline", "$15,756,408", "You · bbbb0002", "sandbox · seed 42", "upper bound $2.20B"]
+        ["Rule-based baseline", "$15,756,408", "You · bbbb0002", "sandbox · seed 42", "upper bound: $2.20B"]
     {
         assert!(screen.contains(part), "{part} is missing in\n{screen}");
     }
@@ -375,7 +374,7 @@ fn a_run_is_played_again_from_the_list_and_from_the_first_page() {
 fn a_run_that_does_not_open_is_offered_another_way_after_a_question() {
     let long = "trajectory.jsonl, line 8: the line does not follow from the one before. ".repeat(12);
     for (instead, words) in [
-        (Instead::Watch("aaaa0001".to_owned()), "Watch it from here"),
+        (Instead::Watch("aaaa0001".to_owned()), "Watch it here"),
         (Instead::Rescue("aaaa0001".to_owned()), "as a branch?"),
     ] {
         for page in [MenuPage::Home, MenuPage::Runs] {
@@ -387,7 +386,7 @@ fn a_run_that_does_not_open_is_offered_another_way_after_a_question() {
                 assert!(screen.contains(words), "{screen}");
             }
             assert_eq!(menu.scopes(), [Scope::Dialog]);
-            assert!(menu.act(Action::Down).is_empty() && menu.asked.is_some(), "only an answer counts");
+            assert!(menu.act(Action::Down).is_empty() && menu.asked.is_some(), "only an answer is accepted");
             match (&instead, &menu.act(Action::Confirm)[..]) {
                 (
                     Instead::Watch(_),
@@ -416,7 +415,10 @@ fn a_participant_agrees_or_nothing_begins() {
         assert!(screen.contains(part), "{part} is missing in\n{screen}");
     }
     assert!(!screen.contains("stop at any time"));
-    assert!(matches!(menu.act(Action::Agree)[..], [Effect::Complain(_)]), "the end was not on the screen");
+    assert!(
+        matches!(menu.act(Action::Agree)[..], [Effect::Complain(_)]),
+        "the end of the text was not shown"
+    );
     (0..60).for_each(|_| drop(menu.act(Action::Down)));
     let end = shown(&menu, 80, 23);
     assert!(end.contains("You can stop at any time.") && end.contains("y I agree"), "{end}");

@@ -1,4 +1,4 @@
-//! Cash by day, with the last forecasts as a fan.
+//! Cash by day with the last forecasts as a fan.
 
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
@@ -6,10 +6,10 @@ use unicode_width::UnicodeWidthStr;
 use super::Overview;
 use super::figures::{self, METRICS};
 use crate::action::Action;
-use crate::effect::Effect;
-use crate::screens::panes::{Border, Pane, Seat};
 use crate::context::{Figure, Look, ScreenId};
+use crate::effect::Effect;
 use crate::fan;
+use crate::screens::panes::{Border, Pane, Seat};
 use novamind_base::notation::{dollars, short_dollars};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::text::arrow;
@@ -17,7 +17,6 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::note_room;
 use novamind_tui::widgets::{Axis, Line, Side, Unit, chart};
 
-/// The curve.
 pub struct CashCurvePane;
 
 impl Pane<Overview> for CashCurvePane {

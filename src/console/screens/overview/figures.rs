@@ -1,10 +1,10 @@
-//! The figures of the week: how each is read, written and judged, and the rows behind it.
+//! Figures of the week: how each is read, formatted and judged, and the query for its rows.
 
 use crate::context::Figure;
 use novamind_base::notation::{dollars, grouped, percent};
+use novamind_insight::WeekQuantity;
 use novamind_record::figures::{WeekFigure, WeekFigures};
 use novamind_session::{WEEK_OF_ENTRY, entries_of_weeks};
-use novamind_insight::WeekQuantity;
 use novamind_tui::text::arrow;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell, Column, spark};
@@ -12,35 +12,35 @@ use novamind_worker::company::Company;
 
 /// A figure of the week.
 pub struct Metric {
-    /// Name.
+    /// Name on the screen.
     pub name: &'static str,
-    /// What explains it.
+    /// Glossary term.
     pub term: &'static str,
-    /// How it is read.
+    /// Reads the value.
     pub read: fn(&WeekFigures) -> f64,
-    /// How it is written.
+    /// Formats the value.
     pub write: fn(f64) -> String,
-    /// Whether more of it is better.
+    /// Whether a higher value is better.
     pub more_is_better: bool,
-    /// Where its rows are.
+    /// Source of its rows.
     source: RowsSource,
 }
 
-/// Where the rows behind a figure are.
+/// Source of the rows behind a figure.
 enum RowsSource {
-    /// All of the ledger up to the end of a week.
+    /// All ledger entries up to the end of the week.
     Cash,
-    /// In the ledger, under a condition.
+    /// Ledger entries that meet a condition.
     Ledger(&'static str),
-    /// Subscriptions that are active now, under a condition; they are those of the last week only.
+    /// Currently active subscriptions that meet a condition; available for the last week only.
     Active(&'static str),
-    /// Customers and subscriptions, under a condition on a day.
+    /// Customers and subscriptions, by a column with a day and a condition.
     Customers(&'static str, &'static str),
-    /// The days of the service, by a column.
+    /// A column of the daily service.
     Service(&'static str),
-    /// Threads of companies that have begun.
+    /// Threads that enterprises started.
     Leads,
-    /// No table tells them.
+    /// No table contains them.
     None,
 }
 
@@ -72,10 +72,17 @@ const SIGNED: &str = "c.customer_type = 'small' AND s.status IN ('subscribed', '
 const LEFT: &str = "c.customer_type = 'small' AND s.status = 'cancelled'";
 const DEALS: &str = "c.customer_type = 'large' AND s.status IN ('subscribed', 'cancelled')";
 
-/// All figures, in their order on the screen.
+/// All figures in display order.
 pub static METRICS: [Metric; 22] = [
     metric("cash at week's end", "cash", |week| week.cash, dollars, true, RowsSource::Cash),
-    metric("recurring revenue", "mrr", |week| week.recurring_revenue, dollars, true, RowsSource::Active("TRUE")),
+    metric(
+        "recurring revenue",
+        "mrr",
+        |week| week.recurring_revenue,
+        dollars,
+        true,
+        RowsSource::Active("TRUE"),
+    ),
     metric(
         "payments",
         "payments",
@@ -183,7 +190,14 @@ pub static METRICS: [Metric; 22] = [
         false,
         RowsSource::Service("downtime_minutes"),
     ),
-    metric("latency, peak ms", "latency", |week| week.p95_ms_peak, whole, false, RowsSource::Service("p95_ms")),
+    metric(
+        "latency, peak ms",
+        "latency",
+        |week| week.p95_ms_peak,
+        whole,
+        false,
+        RowsSource::Service("p95_ms"),
+    ),
     metric(
         "error rate, peak",
         "error-rate",
@@ -193,10 +207,17 @@ pub static METRICS: [Metric; 22] = [
         RowsSource::Service("error_rate"),
     ),
     metric("open issues", "issue", |week| f64::from(week.open_issues), whole, false, RowsSource::None),
-    metric("companies lost", "churn", |week| f64::from(week.companies_lost), whole, false, RowsSource::None),
+    metric(
+        "enterprises lost",
+        "churn",
+        |week| f64::from(week.companies_lost),
+        whole,
+        false,
+        RowsSource::None,
+    ),
 ];
 
-/// Columns of the table; those that can be left out come last.
+/// Returns the columns of the table; narrow windows drop the last ones first.
 pub fn columns() -> Vec<Column> {
     let numbers = ["this week", "change"].map(Column::numbers);
     let last = ["last week", "4-wk mean"].map(Column::numbers);
@@ -204,7 +225,7 @@ pub fn columns() -> Vec<Column> {
     name.into_iter().chain(numbers).chain([Column::words("trend")]).chain(last).collect()
 }
 
-/// Weeks a column speaks of, as distances from the last one, the farthest first.
+/// Returns the weeks that a column covers, as distances from the last week, farthest first.
 fn weeks_of(column: usize) -> (u32, u32) {
     match column {
         2 => (1, 0),
@@ -215,11 +236,11 @@ fn weeks_of(column: usize) -> (u32, u32) {
     }
 }
 
-/// The row of a figure.
+/// Returns the row of a figure.
 pub fn row_of(metric: &Metric, company: &Company) -> Vec<Cell> {
     let trend = company.trend(12, metric.read);
     let now = trend.last().copied();
-    // Cash is the one figure that there was before the first week.
+    // Only cash has a value before the first week.
     let opening = matches!(metric.source, RowsSource::Cash).then_some(company.seen.starting_cash);
     let before = trend.len().checked_sub(2).map(|at| trend[at]).or(opening.filter(|_| now.is_some()));
     let cell = |value: Option<f64>| match value {
@@ -236,7 +257,7 @@ pub fn row_of(metric: &Metric, company: &Company) -> Vec<Cell> {
             };
             let size = change.abs();
             let size = if size == 0.0 { String::new() } else { (metric.write)(size) };
-            // Shares differ by percentage points.
+            // Changes of shares are in percentage points.
             let size = size.strip_suffix('%').map_or(size.clone(), |points| format!("{points} pt"));
             Cell::number(change, arrow(change, &size)).role(tone)
         }
@@ -252,7 +273,7 @@ pub fn row_of(metric: &Metric, company: &Company) -> Vec<Cell> {
     ]
 }
 
-/// The figure in a column, and the rows behind it.
+/// Returns the figure in a column, with a query for its rows.
 pub fn figure(metric: &Metric, column: usize, company: &Company) -> Figure {
     let week = company.seen.week;
     let (from, to) = weeks_of(column);
@@ -263,11 +284,13 @@ pub fn figure(metric: &Metric, column: usize, company: &Company) -> Figure {
     Figure {
         title: format!("{}, {weeks}", metric.name),
         term: metric.term,
-        sql: statement(&metric.source, (from, to), now), why: None }
+        sql: statement(&metric.source, (from, to), now),
+        why: None,
+    }
     .of_week(quantity, to)
 }
 
-/// The rows of some weeks; those that hold only now are left out for other weeks.
+/// Returns the query for the rows of some weeks; `None` if only current rows exist and the weeks are past.
 fn statement(source: &RowsSource, weeks: (u32, u32), now: bool) -> Option<String> {
     let (from, to) = ((7 * weeks.0).saturating_sub(6), 7 * weeks.1);
     let between = |day: &str| format!("{day} BETWEEN {from} AND {to}");

@@ -1,4 +1,4 @@
-//! The company at a glance: cash with the fan of the last forecasts, what needs the person, the week, quality, news.
+//! Overview: cash with a fan of forecasts, items that need action, the week, quality and news.
 
 mod cash;
 pub mod figures;
@@ -16,21 +16,21 @@ use strum::VariantArray;
 
 use self::figures::METRICS;
 use self::news::NewsItem;
+use super::ScreenState;
 use super::panes::{Pane, Paned, draw_pane};
 use super::product::model::{Day, projects, service};
-use crate::context::Look;
-use super::ScreenState;
 use crate::action::Action;
+use crate::context::Look;
 use novamind_database::Rows;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
 use novamind_worker::company::Company;
 use novamind_worker::readings::Reading;
 
-/// Its panes, in the order of the tab key.
+/// Panes in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
 pub enum OverviewPane {
-    /// What needs the person.
+    /// Items that need action.
     #[default]
     Needs,
     /// The figures of the week.
@@ -39,29 +39,26 @@ pub enum OverviewPane {
     Quality,
     /// Cash by day.
     Cash,
-    /// What is new.
+    /// News of the week.
     News,
 }
 
-/// The screen.
+/// The overview screen.
 #[derive(Default)]
 pub struct Overview {
     focus: OverviewPane,
-    /// The need that is selected.
     need: usize,
     week: Table,
     quality: Table,
     days: Vec<Day>,
-    /// What is new: the readings tell a part of it.
+    /// News from the readings.
     notices: Vec<NewsItem>,
     research: Vec<NewsItem>,
     news: Vec<NewsItem>,
-    /// The item that is selected.
     item: usize,
 }
 
 impl Overview {
-    /// Puts together what is new.
     fn gather(&mut self, company: &Company) {
         self.news = self.research.iter().chain(&self.notices).cloned().collect();
         self.news.extend(news::of_posts(company));
@@ -142,7 +139,7 @@ impl Overview {
     fn arrange_wide(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let [left, right] = Layout::horizontal([Constraint::Percentage(50), Constraint::Min(0)]).areas(area);
         let quality = (self.quality.rows().len() as u16 + 3).min(left.height / 2);
-        // Usage has a chart of its own where cash keeps a good one.
+        // Usage has its own chart if cash keeps enough rows.
         let usage = if left.height >= quality + 26 { (left.height - quality) * 2 / 5 } else { 0 };
         let [cash, used, below] =
             Layout::vertical([Constraint::Min(8), Constraint::Length(usage), Constraint::Length(quality)])
@@ -176,7 +173,7 @@ impl Overview {
         let needs = needs::height(look.company, area.width, area.height * 2 / 5);
         let [above, below] = Layout::vertical([Constraint::Length(needs), Constraint::Min(0)]).areas(area);
         draw_pane(self, OverviewPane::Needs, canvas, above, look);
-        // Name, figure and change of the week, with what the names need.
+        // The week needs room for the name, value and change of each figure.
         let left = 48.min(area.width * 3 / 5);
         let [week, side] = Layout::horizontal([Constraint::Length(left), Constraint::Min(0)]).areas(below);
         draw_pane(self, OverviewPane::Week, canvas, week, look);

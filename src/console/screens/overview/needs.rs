@@ -1,23 +1,23 @@
-//! What needs the person, as rows of this screen: where each leads, and the figure it speaks of.
+//! Items that need action: rows, links and figures.
 
 use ratatui::layout::Rect;
 
 use super::Overview;
 use super::rows::{self, LinkedRow, walk};
 use crate::action::Action;
+use crate::context::{Figure, Look, ScreenId};
 use crate::effect::Effect;
 use crate::screens::customers::costs;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look, ScreenId};
-use novamind_report::needs::{Need, Place, Problem};
-use novamind_record::figures::WeekFigure;
-use novamind_session::entries_of_weeks;
 use novamind_insight::WeekQuantity;
+use novamind_record::figures::WeekFigure;
+use novamind_report::needs::{Need, Place, Problem};
+use novamind_session::entries_of_weeks;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_worker::company::Company;
 
-/// What needs the person, the most urgent first.
+/// Items that need action, most urgent first.
 pub struct NeedsPane;
 
 impl Pane<Overview> for NeedsPane {
@@ -48,18 +48,19 @@ impl Pane<Overview> for NeedsPane {
         let needs = &look.company.needs;
         let urgent = needs.iter().filter(|need| need.urgent).count();
         let note = if urgent > 0 { format!("{urgent} now · {} in all", needs.len()) } else { String::new() };
-        Border { title: "Needs you".to_owned(), note, ..Border::default() }
+        Border { title: "Action needed".to_owned(), note, ..Border::default() }
     }
 
     fn draw(&self, overview: &Overview, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
         if look.company.needs.is_empty() {
             let text = match look.company.seen.ended {
-                Some(_) => "the run is over; you can still read and query",
-                // Needs whose tool is locked are left out: that is not the same as none.
+                Some(_) => "The run is over. You can still read and query it.",
+                // Items whose tool is locked are hidden, so an empty list does not mean that nothing needs
+                // action.
                 None if look.company.running_lesson().is_some_and(|own| own.tools.is_some()) => {
-                    "nothing is listed here; your task says what to do"
+                    "Nothing is listed here. Your task says what to do."
                 }
-                None => "nothing: n starts the next week",
+                None => "Nothing needs action. Start the next week with n.",
             };
             canvas.text(seat.area, text, Role::Dim);
         }
@@ -71,14 +72,14 @@ fn rows_of(company: &Company) -> Vec<LinkedRow> {
     company.needs.iter().map(|need| LinkedRow::to(screen_of(need), need.in_words(), need.urgent)).collect()
 }
 
-/// Height of the needs with their border, at most so much.
+/// Returns the height of the pane with its border, limited to `most`.
 pub fn height(company: &Company, width: u16, most: u16) -> u16 {
     let room = width.saturating_sub(2);
     let lines: usize = rows_of(company).iter().map(|row| row.lines(room).len()).sum();
     (lines.max(1) as u16 + 2).min(most.max(4))
 }
 
-/// The screen on which a need is looked after.
+/// Returns the screen for an item.
 pub fn screen_of(need: &Need) -> ScreenId {
     match &need.place {
         Place::Call(..) => ScreenId::Tools,
@@ -88,7 +89,7 @@ pub fn screen_of(need: &Need) -> ScreenId {
     }
 }
 
-/// What leads there: to the very form, thread or group.
+/// Opens the form, thread or group of an item.
 pub fn way_of(need: &Need) -> Effect {
     match &need.place {
         Place::Call(tool, arguments) => Effect::Prefill { tool: *tool, arguments: arguments.clone() },
@@ -98,7 +99,7 @@ pub fn way_of(need: &Need) -> Effect {
     }
 }
 
-/// The figure that a need speaks of.
+/// Returns the figure of an item, with a query for its rows.
 pub fn figure_of(need: &Need, day: u32) -> Figure {
     let from = day.saturating_sub(6);
     let days = |columns: &str| {
@@ -136,9 +137,7 @@ pub fn figure_of(need: &Need, day: u32) -> Figure {
         Problem::NoLeads => ("lead", None),
         Problem::NoSales(group) => ("conversion", Some(leads_of(group.id()))),
         Problem::Unwanted(group) => ("delivered-quality", Some(leads_of(group.id()))),
-        Problem::LeadCost(channel, group) => {
-            ("cost-per-lead", Some(costs::statement(channel, group)))
-        }
+        Problem::LeadCost(channel, group) => ("cost-per-lead", Some(costs::statement(channel, group))),
         Problem::Margin => ("gross-margin", None),
         Problem::Overload | Problem::Capacity => {
             ("overload", Some(days("day, total_usage_units, capacity_units, capacity_tier")))
@@ -157,7 +156,7 @@ pub fn figure_of(need: &Need, day: u32) -> Figure {
     Figure { title: need.text.clone(), term, sql, why: None }.of_week(quantity_of(need), day.div_ceil(7))
 }
 
-/// The figure of a week that a need speaks of.
+/// Returns the weekly figure of an item.
 fn quantity_of(need: &Need) -> Option<WeekQuantity> {
     match need.problem {
         Problem::Runway => WeekQuantity::of_company(WeekFigure::CashChange),

@@ -1,14 +1,14 @@
-//! What is new since the last week: what was finished, found and published, and what people wrote.
+//! News since the last week: completed projects and studies, publications and posts.
 
 use ratatui::layout::Rect;
 
 use super::Overview;
 use super::rows::{self, LinkedRow, walk};
 use crate::action::Action;
+use crate::context::{Figure, Look, ScreenId};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
 use crate::screens::product::model::Project;
-use crate::context::{Figure, Look, ScreenId};
 use novamind_base::notation::grouped;
 use novamind_database::{Rows, text_at};
 use novamind_tui::canvas::Canvas;
@@ -16,7 +16,6 @@ use novamind_tui::theme::Role;
 use novamind_worker::company::Company;
 use novamind_worker::posts::PostKind as Author;
 
-/// What is new.
 pub struct NewsPane;
 
 impl Pane<Overview> for NewsPane {
@@ -56,32 +55,24 @@ impl Pane<Overview> for NewsPane {
     }
 }
 
-/// What an item is about; items stand in this order.
+/// Kind of a news item, in display order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum NewsKind {
-    /// An R&D project was finished.
     Research,
-    /// A study was finished or a group found.
     Study,
-    /// The index of the economy was published.
     Economy,
-    /// People write about the company.
     Posts,
-    /// The press writes.
     Press,
 }
 
-/// Something new.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewsItem {
-    /// What it is about.
     pub kind: NewsKind,
-    /// Words.
     pub text: String,
 }
 
 impl NewsItem {
-    /// Where more of it stands.
+    /// Returns the screen with the details.
     pub fn screen(&self) -> ScreenId {
         match self.kind {
             NewsKind::Research => ScreenId::Product,
@@ -90,12 +81,12 @@ impl NewsItem {
         }
     }
 
-    /// What leads there.
+    /// Opens the details.
     pub fn way(&self) -> Effect {
         Effect::Show(self.screen())
     }
 
-    /// The figure it speaks of.
+    /// Returns the figure of the item, with a query for its rows.
     pub fn figure(&self, day: u32) -> Figure {
         let (term, sql) = match self.kind {
             NewsKind::Research => {
@@ -104,7 +95,9 @@ impl NewsItem {
             NewsKind::Study => {
                 ("info-level", "SELECT *\nFROM group_info_levels\nWHERE info_level > 0".to_owned())
             }
-            NewsKind::Economy => ("pmi", "SELECT *\nFROM macroeconomic_conditions\nORDER BY day DESC".to_owned()),
+            NewsKind::Economy => {
+                ("pmi", "SELECT *\nFROM macroeconomic_conditions\nORDER BY day DESC".to_owned())
+            }
             NewsKind::Posts | NewsKind::Press => (
                 if self.kind == NewsKind::Press { "press" } else { "post" },
                 format!(
@@ -117,7 +110,7 @@ impl NewsItem {
     }
 }
 
-/// What the notices of a week say, the newest first.
+/// Returns the news from the notices of a week, newest first.
 pub fn of_notices(rows: &Rows) -> Vec<NewsItem> {
     let mut items = Vec::new();
     for row in &rows.rows {
@@ -132,20 +125,20 @@ pub fn of_notices(rows: &Rows) -> Vec<NewsItem> {
     items
 }
 
-/// R&D that was finished in the last week, with what it adds.
+/// Returns the R&D projects completed in the last week, with the quality that they add.
 pub fn of_research(projects: &[Project], day: u32) -> Vec<NewsItem> {
     let ended = |project: &&Project| project.done && project.expected + 7 > day && project.expected <= day;
     let words = |project: &Project| NewsItem {
         kind: NewsKind::Research,
-        text: format!("R&D {} done: {:+.4} quality for every group", project.id, project.boost),
+        text: format!("R&D {} completed: {:+.4} quality for every group", project.id, project.boost),
     };
     projects.iter().filter(ended).map(words).collect()
 }
 
-/// What people and the press wrote in the last week.
+/// Counts of posts and press items in the last week.
 pub fn of_posts(company: &Company) -> Vec<NewsItem> {
     let day = company.seen.day;
-    // Posts of the last week, and of the four before it; the newest stand first.
+    // Posts of the last week and of the four weeks before, newest first.
     let (mut own, mut before, mut press) = (0u32, 0u32, 0u32);
     for post in company.posts.iter().take_while(|post| post.day + 35 > day) {
         let weeks = day.saturating_sub(post.day) / 7;
@@ -156,7 +149,7 @@ pub fn of_posts(company: &Company) -> Vec<NewsItem> {
             _ => {}
         }
     }
-    // A young company has fewer weeks to compare with.
+    // Early in a run there are fewer weeks to compare with.
     let weeks = (day / 7).saturating_sub(1).min(4);
     let usual = grouped(f64::from(before) / f64::from(weeks.max(1)), 0);
     let compared = match weeks {
@@ -168,11 +161,14 @@ pub fn of_posts(company: &Company) -> Vec<NewsItem> {
     let mut items = Vec::new();
     if own > 0 {
         let noun = if own == 1 { "post" } else { "posts" };
-        items.push(NewsItem { kind: NewsKind::Posts, text: format!("{own} new {noun} about us{compared}") });
+        items.push(NewsItem { kind: NewsKind::Posts, text: format!("{own} new {noun} about you{compared}") });
     }
     if press > 0 {
         let noun = if press == 1 { "news item" } else { "news items" };
-        items.push(NewsItem { kind: NewsKind::Press, text: format!("{press} {noun} on rivals and the economy") });
+        items.push(NewsItem {
+            kind: NewsKind::Press,
+            text: format!("{press} {noun} on competitors and the economy"),
+        });
     }
     items
 }

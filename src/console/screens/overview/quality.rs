@@ -5,9 +5,9 @@ use unicode_width::UnicodeWidthStr;
 
 use super::Overview;
 use crate::action::Action;
+use crate::context::{Figure, Look, ScreenId};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look, ScreenId};
 use novamind_report::fit::Beside;
 use novamind_session::DeliveredQuality;
 use novamind_session::identifiers::Plan;
@@ -19,11 +19,10 @@ use novamind_tui::widgets::chart::note_room;
 use novamind_tui::widgets::{Cell, Column, Table};
 use novamind_worker::company::Company;
 
-/// Columns of the floor and of the group's own bonus.
+/// Columns of the required quality and of the bonus from targeted development.
 const FLOOR: usize = 4;
 const BONUS: usize = 6;
 
-/// The table of the groups.
 pub struct QualityPane;
 
 impl Pane<Overview> for QualityPane {
@@ -45,7 +44,7 @@ impl Pane<Overview> for QualityPane {
         let of = match column.checked_sub(1).and_then(|at| Plan::ALL.get(at)) {
             Some(plan) => format!("on plan {plan}"),
             None if (FLOOR..BONUS).contains(&column) => {
-                let title = format!("floor of {group}");
+                let title = format!("required quality of {group}");
                 let sql = format!("SELECT * FROM group_info_levels WHERE group_id = '{group}'");
                 return Some(Figure { title, term: "fit", sql: Some(sql), why: None });
             }
@@ -77,13 +76,12 @@ impl Pane<Overview> for QualityPane {
     }
 }
 
-/// The table: columns and rows.
 pub fn table_of(company: &Company) -> (Vec<Column>, Vec<Vec<Cell>>) {
     let tier = |plan: &Plan| number(company.setting(ToolId::SetModelTiers, plan.id()));
     let plans = Plan::ALL.iter().map(|plan| Column::numbers(format!("{plan} tier {}", tier(plan))));
-    let known = ["their floor", "as of"].map(Column::numbers);
+    let known = ["required", "as of"].map(Column::numbers);
     let columns = [Column::words("group")].into_iter().chain(plans).chain(known);
-    let columns = columns.chain([Column::numbers("group's own")]);
+    let columns = columns.chain([Column::numbers("targeted")]);
     let row = |quality: &DeliveredQuality| {
         let bonus = match quality.group_bonus {
             bonus if bonus > 0.0 => Cell::number(bonus, format!("+{bonus:.4}")),
@@ -100,7 +98,8 @@ pub fn table_of(company: &Company) -> (Vec<Column>, Vec<Vec<Cell>>) {
         });
         let none = || Cell::words("–").role(Role::Dim);
         let floor = fit.map_or_else(none, |fit| Cell::number(fit.floor.least, fit.floor.quality()));
-        let as_of = fit.map_or_else(none, |fit| Cell::number(f64::from(fit.as_of), format!("day {}", fit.as_of)));
+        let as_of =
+            fit.map_or_else(none, |fit| Cell::number(f64::from(fit.as_of), format!("day {}", fit.as_of)));
         let name = [Cell::words(quality.group.id()).role(Role::Strong)];
         name.into_iter().chain(plans).chain([floor, as_of, bonus]).collect()
     };

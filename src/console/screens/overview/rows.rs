@@ -1,4 +1,4 @@
-//! Rows of words that lead to a screen, the way needs and news are listed.
+//! Text rows that link to a screen, used for action items and news.
 
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
@@ -10,7 +10,6 @@ use novamind_tui::canvas::{Align, Canvas, Click, fit};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 
-/// Moves a selection among rows.
 pub fn walk(selected: &mut usize, rows: usize, action: Action) {
     let last = rows.saturating_sub(1);
     *selected = match action {
@@ -22,7 +21,7 @@ pub fn walk(selected: &mut usize, rows: usize, action: Action) {
     };
 }
 
-/// A row of words that leads to a screen.
+/// A text row that links to a screen.
 pub struct LinkedRow {
     text: String,
     urgent: bool,
@@ -30,19 +29,18 @@ pub struct LinkedRow {
 }
 
 impl LinkedRow {
-    /// A row with where it leads.
     pub fn to(screen: ScreenId, text: String, urgent: bool) -> LinkedRow {
         LinkedRow { text, urgent, way: format!("→ {}", screen.action().entry().title) }
     }
 
-    /// The words in lines: whole, beside the name of the screen in the first one.
+    /// Returns the wrapped text, with room for the name of the screen in the first line.
     pub fn lines(&self, width: u16) -> Vec<String> {
         let room = (width as usize).saturating_sub(self.way.width() + 4);
         wrapped(&self.text, room.max(12))
     }
 }
 
-/// Draws rows from the first on with which the selected one is seen whole.
+/// Draws the rows, starting where the selected row is completely visible.
 pub fn draw(canvas: &mut Canvas<'_>, seat: Seat, rows: &[LinkedRow], selected: usize) {
     let area = seat.area;
     let all: Vec<Vec<String>> = rows.iter().map(|row| row.lines(area.width)).collect();

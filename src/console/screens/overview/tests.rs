@@ -1,13 +1,13 @@
 use super::*;
-use crate::effect::Effect;
 use crate::context::ScreenId;
+use crate::effect::Effect;
 use crate::screens::Screen;
 use crate::test_kit::{act, asked, courted, drawn, on_screen, played, shown};
-use novamind_report::needs::{Place, Problem};
+use news::NewsKind;
 use novamind_database::Cell as Value;
+use novamind_report::needs::{Place, Problem};
 use novamind_session::Session;
 use novamind_worker::questions::CallCheck;
-use news::NewsKind;
 
 fn sum_of(session: &mut Session, sql: &str, column: &str) -> f64 {
     let rows = session.query(&format!("SELECT {column} FROM ({sql})")).expect("an answer");
@@ -144,7 +144,9 @@ fn a_proposed_call_is_typed_into_its_form_and_can_be_sent() {
     let effects = tools.prefill(tool, &arguments, &company);
     let checked = asked::<CallCheck>(&effects);
     assert_eq!((checked.tool, &checked.arguments), (tool, &arguments));
-    session.call(tool, &arguments, novamind_record::trajectory::record::Via::Form).expect("the proposal is accepted");
+    session
+        .call(tool, &arguments, novamind_record::trajectory::record::Via::Form)
+        .expect("the proposal is accepted");
 }
 
 #[test]
@@ -154,7 +156,7 @@ fn no_word_of_a_need_is_cut_while_there_is_room() {
         let text = drawn(&screen, &company, width, height);
         let last = company.needs[0].text.split_whitespace().next_back().expect("a word");
         assert!(text.contains(last), "{last} in\n{text}");
-        for words in ["This week", "Needs you", "Cash", "individual leads", "→ Tools"] {
+        for words in ["This week", "Action needed", "Cash", "individual leads", "→ Tools"] {
             assert!(text.contains(words), "{words} in\n{text}");
         }
     }
@@ -191,8 +193,10 @@ fn posts_are_compared_with_the_weeks_there_were() {
         };
         let last = weeks as u32;
         let before: Vec<f64> = (last.saturating_sub(4).max(1)..last).map(|week| of(week) as f64).collect();
-        let usual = novamind_base::notation::grouped(before.iter().sum::<f64>() / before.len().max(1) as f64, 0);
-        let told = news::of_posts(&company).into_iter().find(|item| item.kind == NewsKind::Posts).expect("posts");
+        let usual =
+            novamind_base::notation::grouped(before.iter().sum::<f64>() / before.len().max(1) as f64, 0);
+        let told =
+            news::of_posts(&company).into_iter().find(|item| item.kind == NewsKind::Posts).expect("posts");
         assert!(told.text.starts_with(&format!("{} new post", of(last))), "{}", told.text);
         let compared = told.text.split_once('(').map_or("", |(_, compared)| compared);
         assert!(

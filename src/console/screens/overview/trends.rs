@@ -1,4 +1,4 @@
-//! Small charts of the weeks, for the room that large windows have.
+//! Small charts of the weeks for large windows.
 
 use ratatui::layout::Rect;
 
@@ -11,12 +11,11 @@ use novamind_tui::widgets::chart::{note_room, summary, zero_if_near};
 use novamind_tui::widgets::{Axis, Line, Side, Unit, chart};
 use novamind_worker::company::Company;
 
-/// Least height of a small chart with its border.
+/// Minimum height of a small chart with its border.
 const LEAST: u16 = 8;
-/// Greatest.
 const MOST: u16 = 16;
 
-/// Figures that are drawn, with their titles, the most telling first.
+/// Figures with charts and their titles, most informative first.
 static SHOWN: [(&str, &str); 6] = [
     ("subscribers", "Subscribers"),
     ("recurring revenue", "Recurring revenue"),
@@ -26,7 +25,7 @@ static SHOWN: [(&str, &str); 6] = [
     ("running costs", "Running costs"),
 ];
 
-/// Draws as many charts as have room, two in a row.
+/// Draws as many charts as fit, two per row.
 pub fn draw(canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
     let rows = (area.height / LEAST).min(SHOWN.len() as u16 / 2);
     if rows == 0 || area.width < 40 {
@@ -46,7 +45,7 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
     }
 }
 
-/// Height that the charts take of what is left.
+/// Returns the height that the charts take from the free rows.
 pub fn height(room: u16) -> u16 {
     if room < LEAST { 0 } else { room.min(3 * MOST) }
 }
@@ -67,7 +66,6 @@ fn draw_one(canvas: &mut Canvas<'_>, area: Rect, metric: &Metric, title: &str, c
     chart(canvas, inside, &[Line::through(weeks, Role::Series(0))], &x, &Side { unit, holds: zero });
 }
 
-/// Draws usage against capacity by day.
 pub fn draw_usage(canvas: &mut Canvas<'_>, area: Rect, days: &[Day]) {
     let title = "Usage against capacity, units a day";
     let words = match days.last() {

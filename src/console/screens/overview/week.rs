@@ -1,18 +1,17 @@
-//! The figures of the week.
+//! Table of the figures of the week.
 
 use ratatui::layout::Rect;
 
 use super::Overview;
 use super::figures::{self, METRICS};
 use crate::action::Action;
+use crate::context::{Figure, Look, ScreenId};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look, ScreenId};
 use novamind_session::week_of;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
 
-/// The figures with their changes.
 pub struct WeekPane;
 
 impl Pane<Overview> for WeekPane {
@@ -58,7 +57,7 @@ impl Pane<Overview> for WeekPane {
     }
 }
 
-/// The screen that shows more of a figure, by its term.
+/// Returns the screen with details of a figure, by its term.
 fn screen_of(term: &str) -> ScreenId {
     match term {
         "cash" | "payments" | "running-costs" => ScreenId::Cash,

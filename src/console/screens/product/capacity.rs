@@ -1,17 +1,17 @@
-//! The capacity ladder, and how much of it is used.
+//! Capacity tiers and their utilization.
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
 use super::model::{Day, Rung, last_week};
 use super::part::{ProductPart, tier};
 use super::{Product, ProductPane};
-use crate::effect::Effect;
 use crate::context::Figure;
+use crate::effect::Effect;
 use crate::screens::panes::Seat;
 use novamind_base::notation::{compact, dollars, percent};
-use novamind_report::peak::PeakProjection;
-use novamind_record::figures::WeekFigure;
 use novamind_insight::WeekQuantity;
+use novamind_record::figures::WeekFigure;
+use novamind_report::peak::PeakProjection;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::text::fitting;
@@ -20,12 +20,12 @@ use novamind_tui::widgets::table::first_row;
 use novamind_tui::widgets::{Axis, Line, Side, Unit, chart};
 use novamind_worker::company::Company;
 
-/// The tier that served last, and the tier that is set.
+/// Returns the tier of the last day, and the tier that is set.
 pub fn tiers(company: &Company, days: &[Day]) -> (Option<u32>, u32) {
     (days.last().map(|day| day.tier), company.setting(ToolId::SetCapacityTier, "tier") as u32)
 }
 
-/// One line on capacity, the longest wording first.
+/// Returns one line on capacity, longest wording first.
 fn summary(company: &Company, rungs: &[Rung], days: &[Day]) -> Vec<String> {
     let (_, set) = tiers(company, days);
     let Some(rung) = rungs.iter().find(|rung| rung.tier == set) else { return Vec::new() };
@@ -45,7 +45,7 @@ fn summary(company: &Company, rungs: &[Rung], days: &[Day]) -> Vec<String> {
     ]
 }
 
-/// Units as a share of what a tier serves; how far beyond it matters no more at ten times of it.
+/// Returns the utilization of a tier in percent, capped at ten times its capacity.
 fn share(units: f64, of: f64) -> String {
     match of {
         of if of <= 0.0 => "–".to_owned(),
@@ -54,7 +54,7 @@ fn share(units: f64, of: f64) -> String {
     }
 }
 
-/// The ladder, and the history of usage beside or below it where there is room.
+/// The capacity tiers, with the usage history next to or below them if it fits.
 pub struct Capacity;
 
 impl ProductPart for Capacity {
@@ -83,7 +83,7 @@ impl ProductPart for Capacity {
         let tier = product.rungs.get(product.place(self.name()))?.tier;
         let sql = "SELECT day, total_usage_units, capacity_units, capacity_tier FROM service_day\n\
                    WHERE day > (SELECT max(day) FROM service_day) - 7 ORDER BY day DESC";
-        let title = format!("use of tier {tier} in the last week");
+        let title = format!("usage of tier {tier} in the last week");
         let figure = Figure { title, term: "capacity-tier", sql: Some(sql.to_owned()), why: None };
         Some(figure.of_week(WeekQuantity::of_company(WeekFigure::Usage), company.seen.week))
     }
@@ -143,7 +143,6 @@ fn draw_ladder(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: 
     }
 }
 
-/// Usage against what was to be had, with the tiers near it as dotted lines.
 fn draw_history(canvas: &mut Canvas<'_>, area: Rect, rungs: &[Rung], days: &[Day]) {
     let most = days.iter().map(|day| day.usage.max(day.capacity)).fold(0.0, f64::max);
     let (Some(first), Some(last)) = (days.first(), days.last()) else {

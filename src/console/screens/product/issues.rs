@@ -7,26 +7,25 @@ use ratatui::layout::Rect;
 use super::model::Ages;
 use super::part::{ProductPart, cell};
 use super::{Product, ProductPane};
-use crate::effect::Effect;
 use crate::context::Figure;
+use crate::effect::Effect;
 use crate::screens::panes::Seat;
 use novamind_base::notation::grouped;
-use novamind_session::identifiers::Group;
-use novamind_record::figures::WeekFigure;
 use novamind_insight::WeekQuantity;
+use novamind_record::figures::WeekFigure;
+use novamind_session::identifiers::Group;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_row;
 use novamind_worker::company::Company;
 
-/// What the bars are made of, the youngest first: the older, the denser.
+/// Bar glyphs by age, newest first; older issues are denser.
 const SHADES: [char; 4] = ['░', '▒', '▓', '█'];
 
-/// Width of the figures beside the bars.
 const FIGURES: u16 = 45;
 
-/// One line on issues; nothing is said before they were read.
+/// Summarizes open issues; empty before they are read.
 fn summary(issues: Option<&BTreeMap<String, Ages>>) -> String {
     let Some(issues) = issues else { return String::new() };
     let all: f64 = issues.values().flatten().fold(0.0, |sum, count| sum + count);
@@ -34,7 +33,6 @@ fn summary(issues: Option<&BTreeMap<String, Ages>>) -> String {
     format!("{} open, {} for 8 days or more", grouped(all, 0), grouped(old, 0))
 }
 
-/// The groups whose customers wait for support.
 pub struct Issues;
 
 impl Issues {
@@ -84,7 +82,7 @@ impl ProductPart for Issues {
     }
 }
 
-/// Draws all groups in the first row, and each of them in one of its own; bars share one scale.
+/// Draws a row with all groups, then one row per group. All bars share one scale.
 fn draw(product: &Product, canvas: &mut Canvas<'_>, seat: Seat) {
     let (area, selected) = (seat.area, product.place(ProductPane::Issues));
     let head = ["to 3 d", "4-7 d", "8-14 d", "15+ d", "all"].map(str::to_owned);
@@ -94,13 +92,12 @@ fn draw(product: &Product, canvas: &mut Canvas<'_>, seat: Seat) {
     }
     let below = Rect { y: area.y + 1, height: area.height - 1, ..area };
     let Some(issues) = product.issues.as_ref().filter(|issues| !issues.is_empty()) else {
-        let words =
-            if product.issues.is_some() { "no customer is waiting for support" } else { "reading …" };
+        let words = if product.issues.is_some() { "No open issues" } else { "reading …" };
         return canvas.text(below, words, Role::Dim);
     };
     if area.width > FIGURES + 22 {
         let place = Rect { x: area.x + FIGURES + 2, width: area.width - FIGURES - 2, height: 1, ..area };
-        canvas.text(place, "░ young … █ old", Role::Dim);
+        canvas.text(place, "░ new … █ old", Role::Dim);
     }
     let mut all: Ages = [0.0; 4];
     for ages in issues.values() {
@@ -144,7 +141,7 @@ fn cells(ages: &Ages) -> [String; 5] {
     })
 }
 
-/// The ages of a group beside each other, as parts of the largest group.
+/// Returns the ages of a group as one bar, relative to the group with the most issues.
 fn stacked(ages: &Ages, whole: f64, width: usize) -> String {
     let (mut text, mut sum, mut drawn) = (String::new(), 0.0, 0);
     for (count, shade) in ages.iter().zip(SHADES) {

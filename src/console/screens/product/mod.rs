@@ -18,32 +18,32 @@ use strum::VariantArray;
 
 use self::model::{Ages, Day, PlanFacts, Project, ProjectOffer, Rung};
 use self::part::ProductPart;
+use super::ScreenState;
 use super::panes::{Pane, Paned, draw_pane};
 use crate::context::Look;
-use super::ScreenState;
-use novamind_report::plan_margins::Sales;
-use novamind_session::identifiers::Plan;
 use novamind_database::Rows;
+use novamind_report::plan_margins::Sales;
 use novamind_session::Category;
+use novamind_session::identifiers::Plan;
 use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::theme::Role;
 use novamind_worker::readings::Reading;
 
-/// Its panes, in the order of the tab key.
+/// Panes in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
 pub enum ProductPane {
     /// Delivered quality by group.
     Quality,
-    /// What each plan costs and earns.
+    /// Costs and revenue of each plan.
     Plans,
-    /// The capacity ladder; it asks for a decision most often.
+    /// Capacity tiers, the most frequent decision.
     #[default]
     Capacity,
-    /// How the service runs.
+    /// Service measures by day.
     Service,
     /// Open issues by group and age.
     Issues,
-    /// Projects, and what can be started.
+    /// R&D projects, running and available.
     Research,
 }
 
@@ -71,24 +71,23 @@ impl ProductPane {
     }
 }
 
-/// The screen.
+/// The product screen.
 #[derive(Default)]
 pub struct Product {
     focus: ProductPane,
-    /// Place in the list of each pane.
+    /// Selected row of each pane.
     places: [usize; ProductPane::VARIANTS.len()],
     sales: Sales,
     plans: [PlanFacts; 3],
     rungs: Vec<Rung>,
     days: Vec<Day>,
-    /// Open issues by group; none before they were read.
+    /// Open issues by group; `None` before they are read.
     issues: Option<BTreeMap<String, Ages>>,
-    /// Plan of the selected figure.
     column: usize,
     projects: Vec<Project>,
     offers: Vec<ProjectOffer>,
     spent: research::Spent,
-    /// The ladder was pointed at the tier in force.
+    /// Whether the selection was moved to the current capacity tier once.
     placed: bool,
 }
 
@@ -101,7 +100,6 @@ impl Product {
         &mut self.places[pane as usize]
     }
 
-    /// The plan of the selected column.
     fn plan(&self) -> Plan {
         Plan::ALL[self.column.min(Plan::ALL.len() - 1)]
     }
@@ -177,7 +175,7 @@ impl Paned for Product {
 }
 
 impl Product {
-    /// Every pane at once, in two columns.
+    /// Draws all panes in two columns.
     fn arrange_all(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         use ProductPane::{Capacity, Issues, Plans, Quality, Research, Service};
         let [left, right] = Layout::horizontal([Constraint::Percentage(48), Constraint::Min(0)]).areas(area);
@@ -199,7 +197,7 @@ impl Product {
         }
     }
 
-    /// A line on every pane, and the one with the focus below.
+    /// Draws one line per pane, with the focused pane below.
     fn arrange_one(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let panes = ProductPane::VARIANTS;
         let lines = (panes.len() as u16).min(area.height / 3);

@@ -1,43 +1,43 @@
-//! What is known of the product: plans, capacity, the service by day, issues, projects.
+//! Product figures collected from the readings: plans, capacity, service, issues, projects.
 
 use std::collections::BTreeMap;
 
-use novamind_worker::company::Company;
-use novamind_report::plan_margins::{PlanUse, Sales};
 use novamind_database::{Rows, number_at, text_at};
 use novamind_record::figures::WeekFigures;
+use novamind_report::plan_margins::{PlanUse, Sales};
+use novamind_session::identifiers::Plan;
 use novamind_session::{Category, ResearchMeans};
 use novamind_tools::{CapacityTierFacts, ResearchTierFacts, ToolId};
-use novamind_session::identifiers::Plan;
+use novamind_worker::company::Company;
 
-/// A plan, its settings and what it earns.
+/// A plan with its settings and revenue.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PlanFacts {
     /// Model tier.
     pub tier: u32,
-    /// Units a day and customer.
+    /// Units per day and customer.
     pub quota: f64,
-    /// List price, dollars a month and seat.
+    /// List price, $ per month and seat.
     pub price: f64,
-    /// Dollars a unit.
+    /// Compute cost, $ per unit.
     pub unit_cost: f64,
-    /// Its subscribers, what they pay and what they used on the last day.
+    /// Its subscribers, their payments and their usage on the last day.
     pub sold: PlanUse,
 }
 
 impl PlanFacts {
-    /// Dollars a month and seat for compute.
+    /// Returns the compute cost, $ per month and seat.
     pub fn compute(&self) -> Option<f64> {
         self.sold.compute(self.unit_cost)
     }
 
-    /// Share of the revenue that compute leaves.
+    /// Returns the share of the revenue that remains after compute.
     pub fn margin(&self) -> Option<f64> {
         self.sold.margin(self.unit_cost)
     }
 }
 
-/// The plans with their settings and what they sell.
+/// Returns the plans with their settings and sales.
 pub fn plans(sales: &Sales, company: &Company) -> [PlanFacts; 3] {
     Plan::ALL.map(|plan| {
         let tier = company.setting(ToolId::SetModelTiers, plan.id()) as u32;
@@ -52,18 +52,18 @@ pub fn plans(sales: &Sales, company: &Company) -> [PlanFacts; 3] {
     })
 }
 
-/// A step of the capacity ladder.
+/// A capacity tier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rung {
-    /// Tier.
+    /// Tier number.
     pub tier: u32,
-    /// Units a day.
+    /// Units per day.
     pub units: f64,
-    /// Dollars a day.
+    /// Dollars per day.
     pub cost: f64,
 }
 
-/// The capacity ladder, the smallest first.
+/// Returns all capacity tiers, smallest first.
 pub fn ladder(company: &Company) -> Vec<Rung> {
     let rung = |(tier, facts): (&u8, &CapacityTierFacts)| Rung {
         tier: u32::from(*tier),
@@ -75,18 +75,18 @@ pub fn ladder(company: &Company) -> Vec<Rung> {
     ladder
 }
 
-/// A day of the service.
+/// The service on one day.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Day {
-    /// Day.
+    /// Day of the run.
     pub day: u32,
     /// Units used.
     pub usage: f64,
-    /// Units it can serve.
+    /// Capacity in units.
     pub capacity: f64,
-    /// Tier in force.
+    /// Capacity tier on the day.
     pub tier: u32,
-    /// Latency, milliseconds.
+    /// 95th percentile of latency, ms.
     pub latency: f64,
     /// Share of failed requests.
     pub errors: f64,
@@ -95,13 +95,13 @@ pub struct Day {
 }
 
 impl Day {
-    /// Share of the capacity that was used.
+    /// Returns the usage divided by capacity.
     pub fn utilisation(&self) -> f64 {
         if self.capacity > 0.0 { self.usage / self.capacity } else { 0.0 }
     }
 }
 
-/// The service, day by day.
+/// Returns the service by day.
 pub fn service(rows: &Rows) -> Vec<Day> {
     let day = |row: &Vec<novamind_database::Cell>| Day {
         day: number_at(row, 0) as u32,
@@ -115,40 +115,40 @@ pub fn service(rows: &Rows) -> Vec<Day> {
     rows.rows.iter().map(day).collect()
 }
 
-/// Mean and peak usage of the last seven days; none before the first.
+/// Returns the mean and peak usage of the last seven days; `None` before the first day.
 pub fn last_week(days: &[Day]) -> Option<(f64, f64)> {
     let last = &days[days.len().saturating_sub(7)..];
     let peak = last.iter().map(|day| day.usage).fold(0.0, f64::max);
     (!last.is_empty()).then(|| (last.iter().map(|day| day.usage).sum::<f64>() / last.len() as f64, peak))
 }
 
-/// Open issues of a group by age: 1 to 3 days and younger, 4 to 7, 8 to 14, older.
+/// Open issues by age in days: up to 3, 4 to 7, 8 to 14, 15 or more.
 pub type Ages = [f64; 4];
 
-/// Open issues by group.
+/// Returns the open issues by group.
 pub fn issues(rows: &Rows) -> BTreeMap<String, Ages> {
     let ages = |row: &Vec<novamind_database::Cell>| std::array::from_fn(|at| number_at(row, at + 1));
     rows.rows.iter().map(|row| (text_at(row, 0).to_owned(), ages(row))).collect()
 }
 
-/// An R&D project that was started.
+/// An R&D project.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Project {
     /// Identifier.
     pub id: String,
-    /// Tier.
+    /// Project tier.
     pub tier: u32,
-    /// It has been completed.
+    /// Whether it is completed.
     pub done: bool,
-    /// Day it was paid.
+    /// Day on which it was paid.
     pub started: u32,
-    /// Day on which it will be, or was expected to be, done.
+    /// Expected or actual day of completion.
     pub expected: u32,
-    /// Quality it adds.
+    /// Quality that it adds.
     pub boost: f64,
 }
 
-/// The projects, the newest first.
+/// Returns the R&D projects, newest first.
 pub fn projects(rows: &Rows) -> Vec<Project> {
     let project = |row: &Vec<novamind_database::Cell>| Project {
         id: text_at(row, 0).to_owned(),
@@ -161,22 +161,22 @@ pub fn projects(rows: &Rows) -> Vec<Project> {
     rows.rows.iter().map(project).collect()
 }
 
-/// A kind of R&D project that can be started.
+/// An R&D project that can be started.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProjectOffer {
-    /// Tier.
+    /// Project tier.
     pub tier: u32,
     /// Name.
     pub name: String,
-    /// Dollars.
+    /// Cost in dollars.
     pub cost: f64,
-    /// Mean days and mean gain.
+    /// Mean duration in days and mean quality gain.
     pub means: ResearchMeans,
-    /// How many run, and how many are done.
+    /// Numbers of running and of completed projects.
     pub counts: (usize, usize),
 }
 
-/// The kinds of R&D projects.
+/// Returns the R&D projects that can be started.
 pub fn offers(company: &Company) -> Vec<ProjectOffer> {
     let offer = |(tier, means): (&ResearchTierFacts, &ResearchMeans)| ProjectOffer {
         tier: u32::from(tier.tier),
@@ -188,7 +188,7 @@ pub fn offers(company: &Company) -> Vec<ProjectOffer> {
     company.projects.tiers.iter().zip(&company.research_means).map(offer).collect()
 }
 
-/// Dollars spent on a category by week, from the first week on.
+/// Returns the dollars per week of a ledger category, from the first week.
 pub fn spent(weeks: &[WeekFigures], category: Category) -> Vec<f64> {
     weeks.iter().map(|week| -week.booked.of(category)).collect()
 }

@@ -1,49 +1,45 @@
-//! What the panes of this screen have in common: a list whose rows lead somewhere, and one line for small windows.
+//! Shared behavior of the panes: rows that open something, and a one-line summary for small windows.
 
 use ratatui::layout::Rect;
 
 use super::{Product, ProductPane};
 use crate::action::Action;
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_tools::ToolId;
 use novamind_tui::canvas::Canvas;
 use novamind_worker::company::Company;
 
-/// One of the panes.
 pub trait ProductPart: Pane<Product> {
-    /// Which.
     fn name(&self) -> ProductPane;
 
-    /// Rows that can be selected.
+    /// Returns the number of selectable rows.
     fn rows(&self, _: &Product, _: &Company) -> usize {
         1
     }
 
-    /// All of it in one line, in as many words as some columns hold.
+    /// Returns a one-line summary in at most `width` columns.
     fn summary(&self, product: &Product, company: &Company, width: usize) -> String;
 
-    /// What stands at the right of its border.
+    /// Returns the text at the right of the border.
     fn note(&self, product: &Product, company: &Company, width: usize) -> String {
         self.summary(product, company, width)
     }
 
-    /// What opening the selected row leads to, in a word.
+    /// Returns the name of the destination that the selected row opens.
     fn destination(&self, product: &Product) -> &'static str;
 
-    /// Leads to the very object that is selected: its cell, or the form with it proposed.
+    /// Opens the selected object: its cell, or its form with a value filled in.
     fn open(&self, product: &Product, company: &Company) -> Effect;
 
-    /// The figure that is selected.
     fn selected(&self, product: &Product, company: &Company) -> Option<Figure>;
 
-    /// Moves sideways in the selected row; false where that leads to the next pane.
+    /// Moves sideways in the selected row; returns false if the key should lead to the next pane.
     fn turn(&self, _: &mut Product, _: Action) -> bool {
         false
     }
 
-    /// Draws its inside.
     fn paint(&self, product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &Company);
 }
 
@@ -101,7 +97,7 @@ impl<P: ProductPart> Pane<Product> for P {
     }
 }
 
-/// Leads to the cell of a tool that is for something, or to its form.
+/// Opens the form of a tool, at the cell of an object if given.
 pub fn cell(tool: ToolId, of: Option<String>) -> Effect {
     match of {
         Some(of) => Effect::ShowCell(tool, of),
@@ -109,7 +105,7 @@ pub fn cell(tool: ToolId, of: Option<String>) -> Effect {
     }
 }
 
-/// Leads to the form of a tool with a tier typed into it.
+/// Opens the form of a tool with a tier filled in.
 pub fn tier(tool: ToolId, tier: Option<u32>) -> Effect {
     match tier {
         Some(tier) => Effect::Prefill { tool, arguments: serde_json::json!({ "tier": tier }) },

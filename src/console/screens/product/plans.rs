@@ -1,4 +1,4 @@
-//! What each plan costs and earns.
+//! Costs and revenue of each plan.
 
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
@@ -19,7 +19,7 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_row;
 use novamind_worker::company::Company;
 
-/// The plans as columns; a row leads to the tool that sets it.
+/// Table with plans as columns. A row opens the tool that sets it.
 pub struct Plans;
 
 impl ProductPart for Plans {
@@ -38,19 +38,22 @@ impl ProductPart for Plans {
         };
         let customers = each(|plan| grouped(plan.sold.customers, 0));
         if product.plans.iter().all(|plan| plan.margin().is_none()) {
-            return fitting([format!("no margin yet · customers {customers}"), "no margin yet".to_owned()], width);
+            return fitting(
+                [format!("no margin yet · customers {customers}"), "no margin yet".to_owned()],
+                width,
+            );
         }
         let margins = each(|plan| or_none(plan.margin(), |margin| percent(margin, 0)));
         let wordings = [
-            format!("margin at the last day's use {margins} · customers {customers}"),
-            format!("margin at the last day's use {margins}"),
+            format!("margin at last-day usage {margins} · customers {customers}"),
+            format!("margin at last-day usage {margins}"),
             format!("margin {margins}"),
         ];
         fitting(wordings, width)
     }
 
     fn note(&self, _: &Product, _: &Company, _: usize) -> String {
-        "of seats that used it on the last day, 30 days a month".to_owned()
+        "for seats with usage on the last day, 30 days a month".to_owned()
     }
 
     fn destination(&self, product: &Product) -> &'static str {
@@ -106,18 +109,18 @@ impl ProductPart for Plans {
     }
 }
 
-/// A figure of a plan: name, how it is written.
+/// Name and format of a figure.
 type PlanFigure = (&'static str, fn(&PlanFacts) -> String);
 
 fn or_none(value: Option<f64>, write: impl Fn(f64) -> String) -> String {
     value.map_or("–".to_owned(), write)
 }
 
-/// Figures of the plans, in the order of what is looked at first.
+/// Figures in display order, most used first.
 static FIGURES: [PlanFigure; 11] = [
     ("model tier", |plan| format!("T{}", plan.tier)),
-    ("price a month", |plan| cents(plan.price)),
-    ("quota a day", |plan| compact(plan.quota)),
+    ("price/month", |plan| cents(plan.price)),
+    ("quota/day", |plan| compact(plan.quota)),
     ("unit cost, $/1k", |plan| format!("${}", grouped(plan.unit_cost * 1000.0, 3))),
     ("customers", |plan| grouped(plan.sold.customers, 0)),
     ("billed seats", |plan| grouped(plan.sold.seats, 0)),
@@ -125,15 +128,15 @@ static FIGURES: [PlanFigure; 11] = [
     ("paid/seat, mo.", |plan| or_none(plan.sold.revenue(), cents)),
     ("compute/seat, mo.", |plan| or_none(plan.compute(), cents)),
     ("gross margin", |plan| {
-        // The sign stands beside the plan that loses, where no window cuts it.
+        // The warning sign is on the losing plan, where narrow windows do not cut it.
         or_none(plan.margin(), |margin| {
             format!("{}{}", if margin < 0.0 { "! " } else { "" }, percent(margin, 1))
         })
     }),
-    ("billed a month", |plan| format!("${}", compact(plan.sold.monthly))),
+    ("billed/month", |plan| format!("${}", compact(plan.sold.monthly))),
 ];
 
-/// The tool that sets what a row shows.
+/// Returns the tool that sets the value of a row.
 fn tool_of(row: usize) -> ToolId {
     match row {
         0 | 3 | 9 => ToolId::SetModelTiers,
@@ -142,7 +145,7 @@ fn tool_of(row: usize) -> ToolId {
     }
 }
 
-/// A figure of a plan, by the rows of the table of plans.
+/// Returns the figure of a row and plan, with a query for its rows.
 fn figure_of(row: usize, plan: Plan) -> Figure {
     let subscribers = || {
         Some(format!(
@@ -167,11 +170,11 @@ fn figure_of(row: usize, plan: Plan) -> Figure {
         3 => ("unit cost", "compute", setting("tier")),
         4 => ("customers", "subscriber", subscribers()),
         5 => ("billed seats", "billed-seats", subscribers()),
-        6 => ("usage a seat", "usage", usage()),
-        7 => ("paid a seat", "effective-price", subscribers()),
-        8 => ("compute a seat", "compute", usage()),
+        6 => ("usage per seat", "usage", usage()),
+        7 => ("payment per seat", "effective-price", subscribers()),
+        8 => ("compute per seat", "compute", usage()),
         9 => ("gross margin", "gross-margin", subscribers()),
-        _ => ("billed a month", "billed-seats", subscribers()),
+        _ => ("billed per month", "billed-seats", subscribers()),
     };
     Figure { title: format!("{name} of plan {plan}"), term, sql, why: None }
 }

@@ -1,11 +1,11 @@
-//! Delivered quality by group, with what it is made of.
+//! Delivered quality by group with its components.
 
 use ratatui::layout::Rect;
 
 use super::part::{ProductPart, cell};
 use super::{Product, ProductPane};
-use crate::effect::Effect;
 use crate::context::Figure;
+use crate::effect::Effect;
 use crate::screens::panes::Seat;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, Click, rows_of};
@@ -14,7 +14,6 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_row;
 use novamind_worker::company::Company;
 
-/// The components of quality, one group in a row.
 pub struct Quality;
 
 impl ProductPart for Quality {
@@ -58,7 +57,8 @@ impl ProductPart for Quality {
         let tier = |plan: &str| format!("{plan} T{}", number(company.setting(ToolId::SetModelTiers, plan)));
         let wide = area.width >= 62;
         let parts = if wide { format!(" {:>7} {:>8}", "base", "general") } else { String::new() };
-        let head = format!("group {parts} {:>8} {:>9} {:>8} {:>8}", "own +", tier("A"), tier("B"), tier("C"));
+        let head =
+            format!("group {parts} {:>8} {:>9} {:>8} {:>8}", "targeted", tier("A"), tier("B"), tier("C"));
         canvas.text(area, &head, Role::Header);
         let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
         if seat.focused {

@@ -1,12 +1,12 @@
-//! R&D: a time line of the projects, what can be started, and what development and support have cost.
+//! R&D: timeline of projects, available projects, and spend on development and operations.
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
 use super::model::Project;
 use super::part::{ProductPart, tier};
 use super::{Product, ProductPane};
-use crate::effect::Effect;
 use crate::context::Figure;
+use crate::effect::Effect;
 use crate::screens::panes::Seat;
 use novamind_base::notation::{compact, dollars, short_dollars};
 use novamind_report::research::{mean_days, mean_gain};
@@ -17,16 +17,12 @@ use novamind_tui::widgets::spark;
 use novamind_tui::widgets::table::first_row;
 use novamind_worker::company::Company;
 
-/// Weekly spend on development and operations.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Spent {
-    /// Development by week.
     pub development: Vec<f64>,
-    /// Operations by week.
     pub operations: Vec<f64>,
 }
 
-/// One line on R&D.
 fn summary(projects: &[Project], last_day: u32) -> String {
     let running = projects.iter().filter(|project| !project.done);
     let next = running.clone().min_by_key(|project| project.expected);
@@ -44,7 +40,7 @@ fn summary(projects: &[Project], last_day: u32) -> String {
     }
 }
 
-/// The projects, and what can be started.
+/// Running and available projects.
 pub struct Research;
 
 impl ProductPart for Research {
@@ -62,7 +58,7 @@ impl ProductPart for Research {
 
     fn note(&self, product: &Product, company: &Company, width: usize) -> String {
         match product.focus == self.name() {
-            true => format!("{} to spend", dollars(company.seen.cash)),
+            true => format!("{} cash", dollars(company.seen.cash)),
             false => self.summary(product, company, width),
         }
     }
@@ -81,7 +77,12 @@ impl ProductPart for Research {
         let (place, term) = (product.place(self.name()), "research-project");
         if let Some(project) = product.projects.get(place) {
             let sql = format!("SELECT * FROM research_projects WHERE project_id = '{}'", project.id);
-            return Some(Figure { title: format!("project {}", project.id), term, sql: Some(sql), why: None });
+            return Some(Figure {
+                title: format!("project {}", project.id),
+                term,
+                sql: Some(sql),
+                why: None,
+            });
         }
         let offer = product.offers.get(place - product.projects.len())?;
         let sql = "SELECT * FROM research_projects ORDER BY started_day DESC".to_owned();
@@ -111,7 +112,7 @@ fn draw_spent(canvas: &mut Canvas<'_>, area: Rect, spent: &Spent) {
     }
 }
 
-/// The projects as bars over the days from the first start to the last end.
+/// Draws projects as bars over the days from the first start to the last end.
 fn draw_line(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &Company) {
     let (area, projects) = (seat.area, &product.projects);
     let selected =
@@ -121,7 +122,7 @@ fn draw_line(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &C
     let skipped = first_row(selected.unwrap_or(0), rows, projects.len());
     let shown = &projects[skipped..projects.len().min(skipped + rows)];
     if shown.is_empty() {
-        canvas.text(area, "no projects yet: start_research_project starts one", Role::Dim);
+        canvas.text(area, "No projects yet. Start one with start_research_project.", Role::Dim);
         return;
     }
     let first = shown.iter().map(|project| project.started).min().unwrap_or(0).min(today);
@@ -139,7 +140,7 @@ fn draw_line(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &C
         canvas.text(Rect { x, width, ..area }, &format!("day {first}"), Role::Dim);
         let words = format!("day {last}");
         canvas.aligned(Rect { x, width, ..area }, &words, Role::Dim, Align::Right);
-        // Only where it stands clear of both ends.
+        // The mark is drawn only if both end labels leave room.
         let now = place(today);
         if now > 10 && now + 14 < width {
             canvas.text(Rect { x: x + now, width: 5, ..area }, "▼ now", Role::Key);
@@ -213,9 +214,9 @@ fn draw_offers(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: 
             remarks.push(format!("{} done", offer.counts.1));
         }
         if !affordable {
-            remarks.push("! more than your cash".to_owned());
+            remarks.push("! exceeds your cash".to_owned());
         }
-        // Where words do not fit, a sign says that it costs more than there is.
+        // In narrow rows a sign marks projects that cost more than the cash.
         let remarks = match row.width < 70 {
             true if !affordable => "!".to_owned(),
             true => String::new(),

@@ -1,23 +1,22 @@
-//! How the service runs: its measures by day, and its outages.
+//! Service measures by day, and outages.
 
 use ratatui::layout::Rect;
 
 use super::model::Day;
 use super::part::ProductPart;
 use super::{Product, ProductPane};
-use crate::effect::Effect;
 use crate::context::{Figure, NO_DATA};
+use crate::effect::Effect;
 use crate::screens::panes::Seat;
 use novamind_base::notation::{grouped, percent};
-use novamind_record::figures::WeekFigure;
 use novamind_insight::WeekQuantity;
+use novamind_record::figures::WeekFigure;
 use novamind_tui::canvas::{Align, Canvas, rows_of};
 use novamind_tui::text::{fitting, number};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::spark;
 use novamind_worker::company::Company;
 
-/// The measures of the service.
 pub struct Service;
 
 impl ProductPart for Service {
@@ -40,7 +39,7 @@ impl ProductPart for Service {
     fn selected(&self, _: &Product, company: &Company) -> Option<Figure> {
         let sql = "SELECT day, p95_ms, error_rate, downtime_minutes, total_usage_units, capacity_units\n\
                    FROM service_day ORDER BY day DESC LIMIT 28";
-        let title = "the service in 28 days".to_owned();
+        let title = "service, 28 days".to_owned();
         let figure = Figure { title, term: "outage", sql: Some(sql.to_owned()), why: None };
         Some(figure.of_week(WeekQuantity::of_company(WeekFigure::Outage), company.seen.week))
     }
@@ -50,11 +49,11 @@ impl ProductPart for Service {
     }
 }
 
-/// A measure of the service: name, how it is read and written, and how several days are taken together.
+/// Name, reader, format and aggregation of a measure.
 type Measure = (&'static str, fn(&Day) -> f64, fn(f64) -> String, fn(&[f64]) -> f64);
 
 static MEASURES: [Measure; 4] = [
-    ("utilisation", Day::utilisation, |share| percent(share, 0), peak),
+    ("utilization", Day::utilisation, |share| percent(share, 0), peak),
     ("latency p95, ms", |day| day.latency, |value| grouped(value, 0), peak),
     ("error rate", |day| day.errors, |share| percent(share, 2), peak),
     ("outage, minutes", |day| day.downtime, number, |days| days.iter().sum()),
@@ -64,7 +63,7 @@ fn peak(days: &[f64]) -> f64 {
     days.iter().copied().fold(0.0, f64::max)
 }
 
-/// One line on the service, the longer wording first.
+/// Returns one line on the service, longest wording first.
 pub fn summary(days: &[Day]) -> Vec<String> {
     let Some(last) = days.last() else { return vec![NO_DATA.to_owned()] };
     let minutes: f64 = days.iter().rev().take(28).map(|day| day.downtime).sum();
@@ -76,7 +75,7 @@ pub fn summary(days: &[Day]) -> Vec<String> {
     ]
 }
 
-/// Draws the measures of the service by day, then the last outages.
+/// Draws the measures by day, then the last outages.
 pub fn draw(canvas: &mut Canvas<'_>, area: Rect, days: &[Day]) {
     let head = format!("{:<16}{:>8}{:>9}{:>9}  ", "", "last", "7-day", "28-day");
     canvas.text(area, &head, Role::Header);
@@ -110,7 +109,7 @@ fn draw_measure(canvas: &mut Canvas<'_>, row: Rect, (name, read, write, together
         let place = Rect { x: row.x + 44, width: room, ..row };
         canvas.text(place, &spark(&values, room as usize), Role::Series(0));
     }
-    let overloaded = *name == "utilisation" && values.last().is_some_and(|value| *value > 1.0);
+    let overloaded = *name == "utilization" && values.last().is_some_and(|value| *value > 1.0);
     if overloaded {
         canvas.aligned(Rect { width: 43.min(row.width), ..row }, "!", Role::Bad, Align::Right);
     }
@@ -125,7 +124,7 @@ fn draw_outages(canvas: &mut Canvas<'_>, row: Rect, days: &[Day]) {
         .map(|day| format!("day {} {} min", day.day, number(day.downtime)))
         .collect();
     let text = match outages.is_empty() {
-        true => "no outages so far; 7-day and 28-day figures are peaks".to_owned(),
+        true => "No outages so far. 7-day and 28-day figures are peaks.".to_owned(),
         false => format!("outages: {}", outages.join(" · ")),
     };
     canvas.text(row, &text, Role::Dim);

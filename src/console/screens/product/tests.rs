@@ -3,12 +3,12 @@ use serde_json::json;
 use super::model::*;
 use super::*;
 use crate::action::Action;
-use novamind_worker::company::Company;
 use crate::effect::Effect;
 use crate::screens::Screen;
 use crate::test_kit::{act, drawn, on_screen, played, shown};
 use novamind_report::plan_margins::PlanUse;
 use novamind_tools::ToolId;
+use novamind_worker::company::Company;
 
 #[test]
 fn plans_earn_what_is_paid_less_what_is_used() {
@@ -106,7 +106,7 @@ fn the_small_window_has_a_line_on_everything() {
     }
 }
 
-/// Rows that an answer of the database holds at most.
+/// Maximum rows of a query result.
 const MOST: f64 = 5000.0;
 
 #[test]

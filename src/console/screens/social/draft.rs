@@ -1,17 +1,16 @@
-//! Where the next post is written.
+//! Editor for the next post.
 
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::Rect;
 
 use super::{POST, Social, SocialPane};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat, draw_framed};
-use crate::context::{Figure, Look};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 
-/// The draft.
 pub struct DraftPane;
 
 impl Pane<Social> for DraftPane {
@@ -27,7 +26,7 @@ impl Pane<Social> for DraftPane {
     }
 
     fn figure(&self, _: &Social, _: &Look<'_>) -> Option<Figure> {
-        Some(Figure { title: "a post of ours".to_owned(), term: POST.name(), sql: None, why: None })
+        Some(Figure { title: "your post".to_owned(), term: POST.name(), sql: None, why: None })
     }
 
     fn act(&self, social: &mut Social, action: Action, _: &Look<'_>) -> Vec<Effect> {
@@ -42,7 +41,7 @@ impl Pane<Social> for DraftPane {
     fn key(&self, social: &mut Social, key: &KeyEvent, _: &Look<'_>) -> Vec<Effect> {
         match key.code {
             _ if !social.editing => {}
-            // A post has no columns: tab leads on.
+            // A post has no columns, so tab moves the focus.
             KeyCode::Tab => return vec![Effect::Do(Action::FocusNext)],
             KeyCode::BackTab => return vec![Effect::Do(Action::FocusPrevious)],
             _ => social.draft.key(key),
@@ -79,13 +78,13 @@ impl Pane<Social> for DraftPane {
     fn draw(&self, social: &Social, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
         let key = look.keys.label(Action::Compose).unwrap_or_default();
         let hint = match social.posted_this_week() {
-            true => "this week's post is published; the next one after this week".to_owned(),
-            false => format!("{key} writes a post; one a week, read by every known group"),
+            true => "This week's post is published. Write the next one next week.".to_owned(),
+            false => format!("Write a post with {key}. One a week, read by every known group."),
         };
         social.draft.draw(canvas, seat.area, social.editing, &hint);
     }
 
-    /// A post that is too long says so in its border, in the colour of what is wrong.
+    /// Marks a post that is too long in the border.
     fn show(&self, social: &Social, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
         let area = seat.area;
         if area.height < 3 {

@@ -1,13 +1,13 @@
-//! The public conversation as posts in threads: comments stand under the post of ours that they answer.
+//! Posts grouped by thread: comments follow the player's post that they answer.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-pub use novamind_worker::posts::{PostKind, Post};
 use novamind_database::{Rows, number_at, text_at};
+pub use novamind_worker::posts::{Post, PostKind};
 
-/// Our posts as the database tells them.
+/// Returns the player's posts from the database.
 pub fn own_posts(rows: &Rows) -> Vec<Arc<Post>> {
     let own = |row: &Vec<novamind_database::Cell>| {
         let answers = number_at(row, 3) as u32;
@@ -26,21 +26,21 @@ pub fn own_posts(rows: &Rows) -> Vec<Arc<Post>> {
     rows.rows.iter().map(own).collect()
 }
 
-/// Which posts are shown.
+/// Filter of the feed.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Filter {
-    /// Of these writers only.
+    /// Kind of author.
     pub kind: Option<PostKind>,
-    /// Of this week only.
+    /// Week of the posts.
     pub week: Option<u32>,
-    /// Of one thread only: our post, and the one that it answers.
+    /// Thread: the player's post, and the post that it answers.
     pub thread: Option<(u32, Option<u32>)>,
-    /// That hold this text, in any case.
+    /// Case-insensitive text.
     pub text: String,
 }
 
 impl Filter {
-    /// Whether a post is shown.
+    /// Returns whether a post passes the filter.
     pub fn takes(&self, post: &Post) -> bool {
         let wanted = self.text.to_lowercase();
         self.kind.is_none_or(|kind| kind == post.kind)
@@ -51,7 +51,7 @@ impl Filter {
                 || post.head().to_lowercase().contains(&wanted))
     }
 
-    /// The next kind, after the last one all.
+    /// Selects the next kind; after the last kind, all.
     pub fn next_kind(&mut self) {
         self.kind = match self.kind {
             None => PostKind::ALL.first().copied(),
@@ -59,27 +59,27 @@ impl Filter {
         };
     }
 
-    /// The week before, from all weeks the last one.
+    /// Selects the previous week; from all weeks, the last one.
     pub fn earlier_week(&mut self, last: u32) {
         self.week = Some(self.week.map_or(last.max(1), |week| week.saturating_sub(1).max(1)));
     }
 
-    /// The week after, after the last one all.
+    /// Selects the next week; after the last week, all.
     pub fn later_week(&mut self, last: u32) {
         self.week = self.week.map(|week| week + 1).filter(|week| *week <= last);
     }
 
-    /// In words; empty if everything is shown.
+    /// Describes the filter; empty if it shows everything.
     pub fn words(&self) -> String {
         let kind = self.kind.map(|kind| kind.name().to_owned());
         let week = self.week.map(|week| format!("week {week}"));
-        let thread = self.thread.map(|(own, _)| format!("thread of our post {own}"));
+        let thread = self.thread.map(|(own, _)| format!("thread of your post {own}"));
         let text = (!self.text.is_empty()).then(|| format!("\"{}\"", self.text));
         [thread, kind, week, text].into_iter().flatten().collect::<Vec<_>>().join(" · ")
     }
 }
 
-/// Whether a post belongs to the thread of one of ours.
+/// Returns whether a post belongs to the thread of one of the player's posts.
 fn belongs(post: &Post, (own, answered): (u32, Option<u32>)) -> bool {
     match post.kind {
         PostKind::Own => post.number == own,
@@ -88,7 +88,7 @@ fn belongs(post: &Post, (own, answered): (u32, Option<u32>)) -> bool {
     }
 }
 
-/// All posts with the newest first; comments follow the post of ours that they answer, the oldest first.
+/// Returns all posts, newest first; comments follow the player's post that they answer, oldest first.
 pub fn threads(others: &[Arc<Post>], own: &[Arc<Post>]) -> Vec<Arc<Post>> {
     let days: BTreeMap<u32, u32> = own.iter().map(|post| (post.number, post.day)).collect();
     let place = |post: &Arc<Post>| {
@@ -98,7 +98,7 @@ pub fn threads(others: &[Arc<Post>], own: &[Arc<Post>]) -> Vec<Arc<Post>> {
             _ => None,
         };
         let day = thread.and_then(|own| days.get(&own).copied()).unwrap_or(post.day);
-        // Within a day our thread stands first: its head, then the comments in the order they came.
+        // Within a day the player's thread comes first: its post, then the comments by arrival.
         let within = match (thread, post.kind) {
             (Some(own), PostKind::Own) => (0, Reverse(own), 0),
             (Some(own), _) => (0, Reverse(own), post.number),
@@ -111,7 +111,7 @@ pub fn threads(others: &[Arc<Post>], own: &[Arc<Post>]) -> Vec<Arc<Post>> {
     all
 }
 
-/// Posts of others by week, from the first week to the last.
+/// Returns the number of other authors' posts per week, from the first week.
 pub fn by_week(posts: &[Arc<Post>], last: u32, takes: impl Fn(PostKind) -> bool) -> Vec<(f64, f64)> {
     let count = |week: u32| posts.iter().filter(|post| takes(post.kind) && post.week() == week).count();
     (1..=last).map(|week| (f64::from(week), count(week) as f64)).collect()
@@ -185,7 +185,7 @@ mod tests {
         ] {
             assert_eq!(filter.takes(&post(kind, number, 7, answers)), belongs, "{kind:?} {number}");
         }
-        assert_eq!(filter.words(), "thread of our post 2");
+        assert_eq!(filter.words(), "thread of your post 2");
     }
 
     #[test]

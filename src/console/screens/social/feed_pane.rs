@@ -1,19 +1,18 @@
-//! The feed: what people and the press write, and our posts among it.
+//! The feed of posts by customers, the press and the player.
 
 use ratatui::layout::Rect;
 
 use super::feed::Post;
 use super::{Social, wall};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::text::count;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;
 
-/// Posts as the filter lets them through.
 pub struct FeedPane;
 
 impl Pane<Social> for FeedPane {
@@ -102,8 +101,8 @@ impl Pane<Social> for FeedPane {
         }
         if social.shown.is_empty() {
             let words = match social.all.is_empty() {
-                true => "no posts yet: run a week (n)".to_owned(),
-                false => format!("no matching posts: {} shows all", look.hint(Action::Close)),
+                true => "No posts yet. Run a week (n).".to_owned(),
+                false => format!("No matching posts: {}", look.hint(Action::Close)),
             };
             canvas.text(inside, &words, Role::Text);
         }

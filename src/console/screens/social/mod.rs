@@ -1,4 +1,4 @@
-//! What people write, our posts, and where the next one is written.
+//! The social feed, the player's posts, and the editor for the next post.
 
 mod draft;
 pub mod feed;
@@ -14,15 +14,15 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use serde_json::{Value, json};
 use strum::VariantArray;
 
-use self::feed::{Filter, PostKind, Post};
-use super::panes::{Pane, Paned, draw_pane};
-use crate::context::{Figure, Look, ScreenId};
+use self::feed::{Filter, Post, PostKind};
 use super::ScreenState;
+use super::panes::{Pane, Paned, draw_pane};
 use crate::action::Action;
+use crate::context::{Figure, Look, ScreenId};
 use crate::effect::Effect;
 use novamind_base::notation::grouped;
-use novamind_report::post_leads::leads_around;
 use novamind_database::Rows;
+use novamind_report::post_leads::leads_around;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, fit};
 use novamind_tui::theme::Role;
@@ -34,29 +34,29 @@ use novamind_worker::posts::Posts;
 use novamind_worker::questions::CallCheck;
 use novamind_worker::readings::Reading;
 
-/// Its panes, in the order of the tab key.
+/// Panes in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
 pub enum SocialPane {
-    /// Everything that is written.
+    /// All posts.
     #[default]
     Feed,
-    /// Where the next post is written.
+    /// Editor for the next post.
     Draft,
-    /// Our own posts.
+    /// The player's posts.
     Own,
 }
 
 const POST: ToolId = ToolId::PostSocialMedia;
 
-/// The screen.
+/// The social screen.
 #[derive(Default)]
 pub struct Social {
     focus: SocialPane,
     others: Posts,
     own: Vec<Arc<Post>>,
-    /// Everything in the order of the feed.
+    /// All posts in feed order.
     all: Vec<Arc<Post>>,
-    /// Places of the posts that the filter lets through.
+    /// Indexes of the posts that pass the filter.
     shown: Vec<usize>,
     selected: usize,
     filter: Filter,
@@ -64,13 +64,12 @@ pub struct Social {
     table: Table,
     draft: Editor,
     editing: bool,
-    /// Post that the draft answers.
     answers: Option<u32>,
-    /// Arguments of the call that is being looked at before the question.
+    /// Check of the tool call before the user confirms it.
     sending: Pending<CallCheck>,
-    /// Newest post that was looked at; none before the screen was shown.
+    /// Newest post that was seen; `None` before the screen was shown.
     seen: Option<u32>,
-    /// Last day on which they were looked at before the run was opened.
+    /// Last day that was seen before the run was opened.
     viewed: Option<u32>,
     day: u32,
 }
@@ -97,11 +96,11 @@ impl Social {
         self.table.set(columns, self.own.iter().map(row).collect());
     }
 
-    /// Shows what the filter lets through, staying at a post if it is still there.
+    /// Applies the filter; the selection stays on its post if it is still shown.
     fn show_filtered(&mut self, kept: Option<(PostKind, u32)>) {
         self.shown = (0..self.all.len()).filter(|at| self.filter.takes(&self.all[*at])).collect();
         let is_kept = |at: &usize| Some((self.all[*at].kind, self.all[*at].number)) == kept;
-        // At the newest post one stays at the newest post.
+        // If the newest post is selected, the selection follows the newest post.
         let place = self.shown.iter().position(is_kept).filter(|_| self.selected > 0);
         self.selected = place.unwrap_or(0);
     }
@@ -115,12 +114,13 @@ impl Social {
         self.shown.get(self.selected).and_then(|at| self.all.get(*at)).map(Arc::as_ref)
     }
 
-    /// A post with all that is known of it, and the comments on it.
+    /// Shows a post with its details and comments.
     fn read(&self, post: &Post, company: &Company) -> Effect {
         let mut parts = vec![post.text.clone()];
         if post.kind == PostKind::Own {
-            let of =
-                |comment: &&Arc<Post>| comment.kind == PostKind::Comments && comment.answers == Some(post.number);
+            let of = |comment: &&Arc<Post>| {
+                comment.kind == PostKind::Comments && comment.answers == Some(post.number)
+            };
             parts.extend(leads_around(post.day, &company.group_weeks, &company.seen.known_groups));
             let comments = self.all.iter().filter(of);
             parts.extend(comments.map(|comment| format!("↳ {}\n  {}", comment.head(), comment.text)));
@@ -130,12 +130,13 @@ impl Social {
         Effect::ShowText(format!("day {} · {}", post.day, post.head()), parts.join("\n\n"))
     }
 
-    /// Our post that is selected in their table.
+    /// Returns the selected post in the table of the player's posts.
     fn own_post(&self) -> Option<&Post> {
         self.table.selected().and_then(|row| self.own.get(row)).map(Arc::as_ref)
     }
 
-    /// Our post in whose thread a post stands: itself, the one it comments, or the one that answers it.
+    /// Returns the player's post that heads the thread of a post, which is the post itself, a comment on it,
+    /// or the post it answers.
     fn thread_of(&self, post: &Post) -> Option<u32> {
         match post.kind {
             PostKind::Own => Some(post.number),
@@ -144,7 +145,7 @@ impl Social {
         }
     }
 
-    /// Shows the thread of a post; within it, the whole post.
+    /// Shows the thread of a post; within the thread, the complete post.
     fn open(&mut self, post: Option<Post>, company: &Company) -> Vec<Effect> {
         let Some(post) = post else { return Vec::new() };
         match self.thread_of(&post).filter(|_| self.filter.thread.is_none()) {
@@ -173,7 +174,9 @@ impl Social {
                 self.write(Some(number));
                 Vec::new()
             }
-            None => vec![Effect::Complain("select a post of others in the feed to answer it".to_owned())],
+            None => {
+                vec![Effect::Complain("Select another author's post in the feed to answer it".to_owned())]
+            }
         }
     }
 
@@ -181,16 +184,16 @@ impl Social {
         self.draft.text().chars().count()
     }
 
-    /// Asks what the call would do; the question to the person follows the answer.
+    /// Checks the tool call; the confirmation follows.
     fn send(&mut self, look: &Look<'_>) -> Vec<Effect> {
         let (length, most) = (self.length(), look.company.terms.post_characters);
         if self.draft.is_blank() {
             let key = look.keys.label(Action::Compose).unwrap_or_default();
-            return vec![Effect::Complain(format!("nothing to publish: {key} writes a post"))];
+            return vec![Effect::Complain(format!("Nothing to publish. Write a post with {key}."))];
         }
         if length > most {
             return vec![Effect::Complain(format!(
-                "the post has {length} characters, at most {most} are allowed; shorten it by {}",
+                "The post has {length} characters; the maximum is {most}. Shorten it by {}.",
                 length - most
             ))];
         }
@@ -212,12 +215,12 @@ impl Social {
         Effect::ConfirmCall { tool: POST, arguments, text }
     }
 
-    /// The post that is being written, and the post that it answers.
+    /// Returns the unsent post, and the post that it answers.
     pub fn unsent(&self) -> (String, Option<u32>) {
         (self.draft.text(), self.answers)
     }
 
-    /// Puts a post that was being written back.
+    /// Restores an unsent post.
     pub fn restore(&mut self, text: &str, answers: Option<u32>) {
         (self.draft, self.answers) = (Editor::of(text), answers);
     }
@@ -257,7 +260,7 @@ impl ScreenState for Social {
     }
 
     fn unseen(&self) -> usize {
-        // Of a run that was just opened, what the last week brought is new, unless it was looked at before.
+        // After a run is opened, posts of the last week are unread unless they were seen before.
         let is_new = |post: &&Arc<Post>| match self.seen {
             Some(seen) => post.number > seen,
             None => post.day + 7 > self.day && self.viewed.is_none_or(|day| post.day > day),
@@ -354,7 +357,7 @@ impl Paned for Social {
             draw_pane(self, Own, canvas, own, look);
             return self.draw_weeks(canvas, weeks);
         }
-        // One above the other; where even that is too much, the pane with the focus alone.
+        // Panes stacked; if there are too few rows, only the focused one.
         let low = match self.focus {
             _ if area.height >= 14 => 7,
             Draft => area.height,
@@ -374,7 +377,6 @@ impl Paned for Social {
 }
 
 impl Social {
-    /// How much is written by week.
     fn draw_weeks(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let last = self.last_week();
         let people = feed::by_week(&self.others, last, |kind| kind == PostKind::Customers);
@@ -391,12 +393,11 @@ impl Social {
     }
 }
 
-/// A post as a figure.
 fn figure_of(post: &Post) -> Figure {
     let number = post.number;
     let (title, term, sql) = match post.kind {
         PostKind::Own => (
-            format!("views of our post {number}"),
+            format!("views of your post {number}"),
             "views",
             format!(
                 "SELECT agent_post_id, day, views, comment_post_ids, content FROM agent_social_media_posts \

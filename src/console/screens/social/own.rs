@@ -1,18 +1,17 @@
-//! Our own posts, and what came of them.
+//! Table of the player's posts with views and comments.
 
 use ratatui::layout::Rect;
 
 use super::Social;
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::grouped;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Table;
 
-/// The table of our posts.
 pub struct OwnPane;
 
 impl Pane<Social> for OwnPane {
@@ -41,7 +40,12 @@ impl Pane<Social> for OwnPane {
         let sql = format!(
             "SELECT post_id, day, content FROM social_media_posts WHERE reply_to_agent_post_id = {number}"
         );
-        Some(Figure { title: format!("comments on our post {number}"), term: "comment", sql: Some(sql), why: None })
+        Some(Figure {
+            title: format!("comments on your post {number}"),
+            term: "comment",
+            sql: Some(sql),
+            why: None,
+        })
     }
 
     fn act(&self, social: &mut Social, action: Action, look: &Look<'_>) -> Vec<Effect> {
@@ -66,13 +70,13 @@ impl Pane<Social> for OwnPane {
             true => String::new(),
             false => look.hints(&[Action::Open, Action::Sort, Action::Filter]),
         };
-        Border { title: "Our posts".to_owned(), note, keys, ..Border::default() }
+        Border { title: "Your posts".to_owned(), note, keys, ..Border::default() }
     }
 
     fn draw(&self, social: &Social, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
         if social.own.is_empty() {
             let key = look.keys.label(Action::Compose).unwrap_or_default();
-            canvas.text(seat.area, &format!("none yet: {key} writes one"), Role::Dim);
+            canvas.text(seat.area, &format!("None yet. Write one with {key}."), Role::Dim);
             return;
         }
         social.table.draw(canvas, seat.area, seat.focused, seat.number);

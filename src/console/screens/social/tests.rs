@@ -4,13 +4,13 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::*;
 use crate::action::Scope;
-use novamind_worker::company::Company;
 use crate::keys::Keys;
 use crate::screens::Screen;
 use crate::test_kit::{act, asked, drawn, on_screen, played, shown, sweep};
 use novamind_record::trajectory::record::Via;
-use novamind_tools::Refusal;
 use novamind_session::Session;
+use novamind_tools::Refusal;
+use novamind_worker::company::Company;
 
 fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
     let keys = Keys::shipped();
@@ -24,7 +24,7 @@ fn write(screen: &mut Social, company: &Company, text: &str) {
     }
 }
 
-/// A company that posted after its third week; two more have passed.
+/// Returns a company that posted after its third week, two weeks ago.
 fn talked() -> Session {
     let mut session = played(3);
     let text = "Freelancers: 20% more of your drafts are right at once, measured on 1,200 of them.";
@@ -62,14 +62,14 @@ fn every_window_shows_feed_and_desk_and_large_ones_our_posts() {
             assert!(text.contains(words), "{width}×{height} {words} in\n{text}");
         }
         if width >= 120 {
-            for words in ["Our posts", "1 · ", " views", "Posts by week", "press "] {
+            for words in ["Your posts", "1 · ", " views", "Posts by week", "press "] {
                 assert!(text.contains(words), "{width}×{height} {words} in\n{text}");
             }
         }
     }
     screen.focus_on(SocialPane::Own);
     let text = drawn(&screen, &company, 80, 21);
-    assert!(text.contains("Our posts") && text.contains("Freelancers: 20% more"), "{text}");
+    assert!(text.contains("Your posts") && text.contains("Freelancers: 20% more"), "{text}");
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn filters_narrow_the_feed_and_esc_ends_them() {
     write(&mut screen, &company, "zzzz");
     act(&mut screen, Action::Commit, &company);
     assert!(screen.shown.is_empty());
-    assert!(drawn(&screen, &company, 80, 21).contains("no matching posts: esc"));
+    assert!(drawn(&screen, &company, 80, 21).contains("No matching posts: esc"));
     sweep(&mut screen, &company);
     screen.focus_on(SocialPane::Feed);
     act(&mut screen, Action::Close, &company);
@@ -106,7 +106,7 @@ fn a_post_opens_with_its_comments() {
     assert!(act(&mut screen, Action::Open, &company).is_empty());
     assert_eq!((screen.focus, screen.shown.len() as u32), (SocialPane::Feed, screen.own[0].comments + 1));
     let seen = drawn(&screen, &company, 120, 37);
-    assert!(seen.contains("thread of our post 1: ") && seen.contains("our post 1 · "), "{seen}");
+    assert!(seen.contains("thread of your post 1: ") && seen.contains("our post 1 · "), "{seen}");
     let effects = act(&mut screen, Action::Open, &company);
     let [Effect::ShowText(title, text)] = &effects[..] else { panic!("{effects:?}") };
     assert!(
@@ -143,21 +143,21 @@ fn figures_are_made_of_their_rows() {
 fn a_post_is_written_checked_asked_for_and_sent() {
     let (mut session, company, mut screen) = on_screen::<Social>(2);
     let effects = act(&mut screen, Action::SendPost, &company);
-    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("nothing to publish")));
+    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("Nothing to publish")));
     let answered = screen.post().expect("a post").number;
     act(&mut screen, Action::Reply, &company);
     assert_eq!(screen.scopes(), [Scope::Editor, Scope::Social]);
     write(&mut screen, &company, &"x".repeat(281));
     let effects = act(&mut screen, Action::SendPost, &company);
     assert!(
-        matches!(&effects[..], [Effect::Complain(text)] if text.contains("shorten it by 1")),
+        matches!(&effects[..], [Effect::Complain(text)] if text.contains("Shorten it by 1")),
         "{effects:?}"
     );
     assert!(drawn(&screen, &company, 120, 37).contains("! 281 of 280 characters: 1 too many"));
     let key = KeyEvent::new(KeyCode::Backspace, KeyModifiers::NONE);
     with_look(&company, |look| screen.key(&key, look));
     act(&mut screen, Action::LeaveEditor, &company);
-    assert!(screen.holds_unsent_text(), "the draft stays");
+    assert!(screen.holds_unsent_text(), "the draft is kept");
     let effects = act(&mut screen, Action::SendPost, &company);
     let CallCheck { tool, arguments } = asked(&effects);
     assert_eq!(arguments["reply_to_post_id"], answered);
@@ -172,7 +172,7 @@ fn a_post_is_written_checked_asked_for_and_sent() {
     assert!(!screen.holds_unsent_text() && screen.answers.is_none());
     let screen: Social = shown(&mut session, &company);
     assert_eq!(screen.own[0].answers, Some(answered));
-    assert!(drawn(&screen, &company, 80, 21).contains("this week's post is published"));
+    assert!(drawn(&screen, &company, 80, 21).contains("This week's post is published"));
 }
 
 #[test]
@@ -191,7 +191,7 @@ fn a_refused_post_keeps_the_draft() {
     assert_eq!(screen.draft.text(), "Again");
     screen.sending.put(refused());
     let effects = with_look(&company, |look| screen.take_answers(look));
-    assert!(effects.is_empty(), "an answer to nobody's question says nothing");
+    assert!(effects.is_empty(), "an unexpected answer is ignored");
 }
 
 #[test]
@@ -213,5 +213,5 @@ fn a_draft_is_drawn_in_every_window() {
     drawn(&screen, &company, 3, 40);
     sweep(&mut screen, &company);
     let empty = drawn(&Social::default(), &company, 80, 21);
-    assert!(empty.contains("no posts yet: run a week"), "{empty}");
+    assert!(empty.contains("No posts yet. Run a week"), "{empty}");
 }

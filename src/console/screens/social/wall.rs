@@ -1,21 +1,20 @@
-//! The feed on the screen: days, heads and wrapped texts, with the selected post in view.
+//! Draws the feed: day headings, authors and wrapped texts, with the selected post visible.
 
 use unicode_width::UnicodeWidthStr;
 
-use super::feed::{PostKind, Post};
+use super::feed::{Post, PostKind};
 use crate::screens::panes::Seat;
 use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 
-/// A row of the feed: text, meaning, and the place of its post.
 struct FeedRow {
     text: String,
     role: Role,
     place: Option<usize>,
 }
 
-/// Draws posts; the selected one is a place among them.
+/// Draws posts; `selected` is an index among them.
 pub fn draw(canvas: &mut Canvas<'_>, seat: Seat, posts: &[&Post], selected: usize) {
     let (area, focused) = (seat.area, seat.focused);
     if area.is_empty() {
@@ -45,11 +44,11 @@ pub fn draw(canvas: &mut Canvas<'_>, seat: Seat, posts: &[&Post], selected: usiz
     }
 }
 
-/// Rows of the window around the selected post; posts far from it are never wrapped.
+/// Returns the rows around the selected post; distant posts are not wrapped.
 fn rows_around(posts: &[&Post], selected: usize, width: usize, height: usize) -> Vec<FeedRow> {
     let Some(last) = posts.len().checked_sub(1) else { return Vec::new() };
     let selected = selected.min(last);
-    // Above the selected post up to half of the window, and more where the list ends below.
+    // Up to half of the window is above the selected post, more if the list ends below.
     let mut blocks: Vec<Vec<FeedRow>> = vec![rows_of_post(posts, selected, width)];
     let mut below = blocks[0].len();
     let mut next = selected + 1;
@@ -98,7 +97,8 @@ fn rows_of_post(posts: &[&Post], place: usize, width: usize) -> Vec<FeedRow> {
     };
     rows.push(FeedRow { text: format!("{mark}{}", post.head()), role, place: Some(place) });
     let lines = wrapped(&post.text, width.saturating_sub(indent.len()));
-    let text = |line: String| FeedRow { text: format!("{indent}{line}"), role: Role::Text, place: Some(place) };
+    let text =
+        |line: String| FeedRow { text: format!("{indent}{line}"), role: Role::Text, place: Some(place) };
     rows.extend(lines.into_iter().map(text));
     rows
 }

@@ -1,4 +1,4 @@
-//! The tables of the database with their columns, as a tree beside the editor.
+//! Tree of tables and columns next to the editor.
 
 use std::collections::BTreeSet;
 
@@ -13,18 +13,18 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;
 use novamind_tui::widgets::table::first_row;
 
-/// Marks the tables of the x-ray.
+/// Marks x-ray tables.
 const XRAY: &str = "x-ray";
 
-/// A table by its place: those of the x-ray stand after the visible ones.
+/// Returns a table by index; x-ray tables follow the public ones.
 fn table_at(at: usize) -> &'static Table {
     tables().get(at).unwrap_or_else(|| &hidden_tables()[at - tables().len()])
 }
 
-/// The tree and where the person is in it.
+/// The tree with its selection.
 #[derive(Debug, Default)]
 pub struct Browser {
-    /// The tables of the x-ray stand below the others.
+    /// Whether x-ray tables are shown below the others.
     pub shows_hidden: bool,
     open: BTreeSet<usize>,
     selected: usize,
@@ -32,7 +32,7 @@ pub struct Browser {
     typing: Option<Field>,
 }
 
-/// A row of the tree: a table, or one of its columns.
+/// A row of the tree: a table or one of its columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BrowserRow {
     table: usize,
@@ -40,24 +40,21 @@ pub struct BrowserRow {
 }
 
 impl BrowserRow {
-    /// The table.
     pub fn table(self) -> &'static Table {
         table_at(self.table)
     }
 
-    /// The column, if it is one.
     pub fn column(self) -> Option<&'static Column> {
         self.column.map(|at| &self.table().columns[at])
     }
 
-    /// Name of what it is.
     pub fn name(self) -> &'static str {
         self.column().map_or(&self.table().name, |column| &column.name)
     }
 }
 
 impl Browser {
-    /// Rows as shown.
+    /// Returns the visible rows.
     fn entries(&self) -> Vec<BrowserRow> {
         let wanted = self.filter.to_lowercase();
         let holds = |name: &str| wanted.is_empty() || name.to_lowercase().contains(&wanted);
@@ -75,35 +72,32 @@ impl Browser {
         entries
     }
 
-    /// What is selected.
     pub fn selected(&self) -> Option<BrowserRow> {
         self.entries().get(self.selected).copied()
     }
 
-    /// Name of the selected table, if its columns are shown.
+    /// Returns the name of the selected table if it is expanded.
     pub fn opened(&self) -> Option<&'static str> {
         let row = self.selected().filter(|row| self.open.contains(&row.table))?;
         Some(&row.table().name)
     }
 
-    /// Selects a row as shown; whether it was selected before.
+    /// Selects a visible row; returns whether it was already selected.
     pub fn select(&mut self, row: usize) -> bool {
         let again = self.selected == row;
         self.selected = row.min(self.entries().len().saturating_sub(1));
         again
     }
 
-    /// Whether only the tables with a text are shown, or one is being typed.
+    /// Returns whether a filter is set or being typed.
     pub fn is_filtered(&self) -> bool {
         self.is_typing() || !self.filter.is_empty()
     }
 
-    /// Whether a filter is being typed.
     pub fn is_typing(&self) -> bool {
         self.typing.is_some()
     }
 
-    /// Changes the filter while it is typed.
     pub fn edit_filter(&mut self, edit: &mut dyn FnMut(&mut Field)) {
         if let Some(field) = &mut self.typing {
             edit(field);
@@ -112,7 +106,7 @@ impl Browser {
         }
     }
 
-    /// The filter, for the border.
+    /// Returns the filter, for the border.
     pub fn note(&self) -> String {
         if self.filter.is_empty() { String::new() } else { format!("\"{}\"", self.filter) }
     }
@@ -132,7 +126,7 @@ impl Browser {
         }
     }
 
-    /// Walks, opens, closes and filters; false if it can do nothing with the action.
+    /// Moves, expands, collapses and filters; returns false for other actions.
     pub fn act(&mut self, action: Action, page: u16) -> bool {
         let last = self.entries().len().saturating_sub(1);
         match action {
@@ -158,7 +152,7 @@ impl Browser {
         true
     }
 
-    /// Draws the tree, and below it what the selected row means.
+    /// Draws the tree, and a description of the selected row below it.
     pub fn draw(&self, canvas: &mut Canvas<'_>, seat: Seat) {
         let (inside, focused) = (seat.area, seat.focused);
         if inside.is_empty() {
@@ -174,7 +168,7 @@ impl Browser {
             canvas.page = height.max(1);
         }
         if entries.is_empty() {
-            canvas.text(tree, "no such name", Role::Dim);
+            canvas.text(tree, "No match", Role::Dim);
         }
         let from = first_row(self.selected, height as usize, entries.len());
         for (row, (at, entry)) in rows_of(tree).zip(entries.iter().enumerate().skip(from)) {
@@ -249,7 +243,10 @@ mod tests {
         browser.act(Action::Down, 5);
         assert_eq!(browser.selected().map(BrowserRow::name), Some("customer_id"));
         browser.act(Action::Left, 5);
-        assert_eq!((browser.entries().len(), browser.selected().map(BrowserRow::name)), (19, Some("customers")));
+        assert_eq!(
+            (browser.entries().len(), browser.selected().map(BrowserRow::name)),
+            (19, Some("customers"))
+        );
     }
 
     #[test]

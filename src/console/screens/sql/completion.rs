@@ -1,40 +1,37 @@
-//! What could be typed next: columns of the tables that a statement names, tables, keywords, functions.
+//! Completion of SQL: columns of the tables in the statement, tables, keywords, functions.
 
-use novamind_tui::sql::{FUNCTIONS, KEYWORDS, LexemeKind, Token, is_word, statement_at, tokens};
 use novamind_database::catalogue::{Column, Table};
 use novamind_database::{table, tables};
+use novamind_tui::sql::{FUNCTIONS, KEYWORDS, LexemeKind, Token, is_word, statement_at, tokens};
 
-/// A word that could be meant.
+/// A suggestion.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Candidate {
-    /// What is put in.
+    /// Text to insert.
     pub word: String,
-    /// What it is.
     pub what: String,
 }
 
-/// What could be meant at the cursor, and which of it is chosen.
+/// Suggestions at the cursor, and the selected one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Completion {
-    /// Candidates, the likeliest first.
+    /// Suggestions, best first.
     pub candidates: Vec<Candidate>,
-    /// The chosen one.
     pub chosen: usize,
-    /// Letters of the word that are typed already.
+    /// Number of typed characters of the word.
     pub typed: usize,
 }
 
-/// Candidates beyond these are not worth reading.
 const MOST: usize = 40;
 
-/// A table of a statement under the name it has there.
+/// A table of a statement with its alias.
 struct NamedTable {
     name: String,
     table: &'static Table,
 }
 
-/// What could be meant at a place of a text, given in bytes; nothing for a word of fewer letters than `least`, except
-/// right after a point.
+/// Returns the suggestions at a byte offset. Returns `None` for a word shorter than `least`, unless it
+/// follows a point.
 pub fn complete(sql: &str, place: usize, least: usize) -> Option<Completion> {
     let (range, ..) = statement_at(sql, place);
     let start = range.start.min(place);
@@ -44,7 +41,9 @@ pub fn complete(sql: &str, place: usize, least: usize) -> Option<Completion> {
     let inside = |token: &&Token| token.place.start < place && place <= token.place.end;
     let here = pieces.iter().find(inside);
     let open_comment = |token: &Token| token.kind == LexemeKind::Comment;
-    if here.is_some_and(|token| matches!(token.kind, LexemeKind::Text | LexemeKind::Number) || open_comment(token)) {
+    if here.is_some_and(|token| {
+        matches!(token.kind, LexemeKind::Text | LexemeKind::Number) || open_comment(token)
+    }) {
         return None;
     }
     let before = &statement[..place];
@@ -81,21 +80,21 @@ fn of_table(table: &Table) -> Candidate {
     Candidate { word: table.name.clone(), what: "table".to_owned() }
 }
 
-/// Columns of the table that has a name in the statement, or in the database.
+/// Returns the columns of the table with a name or alias in the statement, or a name in the database.
 fn of_source(name: &str, sources: &[NamedTable]) -> Option<Vec<Candidate>> {
     let own = sources.iter().find(|source| source.name.eq_ignore_ascii_case(name)).map(|source| source.table);
     let meant = own.or_else(|| table(name))?;
     Some(meant.columns.iter().map(|column| of_column(meant, column)).collect())
 }
 
-/// Everything that a word without a point before it can be.
+/// Returns the suggestions for a word without a point before it.
 fn of_everything(sql: &str, pieces: &[Token], word_start: usize, sources: &[NamedTable]) -> Vec<Candidate> {
     let said = |token: &&Token| token.kind != LexemeKind::Comment && token.place.end <= word_start;
     let last = pieces.iter().rev().find(said).map(|token| sql[token.place.clone()].to_uppercase());
     let wants_table = last.is_some_and(|word| word == "FROM" || word == "JOIN");
     let names = own_names(sql, pieces)
         .into_iter()
-        .map(|word| Candidate { word, what: "of this statement".to_owned() });
+        .map(|word| Candidate { word, what: "in this statement".to_owned() });
     let all_tables = tables().iter().map(of_table);
     if wants_table {
         return names.chain(all_tables).collect();
@@ -117,13 +116,14 @@ fn of_everything(sql: &str, pieces: &[Token], word_start: usize, sources: &[Name
         .collect()
 }
 
-/// Whether the person writes keywords in small letters.
+/// Returns whether the user writes keywords in lower case.
 fn writes_small(sql: &str, pieces: &[Token]) -> bool {
     let mut keywords = pieces.iter().filter(|token| token.kind == LexemeKind::Keyword);
     keywords.any(|token| sql[token.place.clone()].chars().all(char::is_lowercase))
 }
 
-/// Those that begin with the word, then those of which a later part does (`source` finds `acquisition_source`).
+/// Returns the suggestions that start with the word, then those with a later part that does (`source` finds
+/// `acquisition_source`).
 fn matching(found: Vec<Candidate>, word: &str) -> Vec<Candidate> {
     let wanted = word.to_lowercase();
     let begins = |candidate: &Candidate| candidate.word.to_lowercase().starts_with(&wanted);
@@ -140,7 +140,7 @@ fn matching(found: Vec<Candidate>, word: &str) -> Vec<Candidate> {
     kept
 }
 
-/// Tables that a statement names, each with its alias if it has one.
+/// Returns the tables in a statement, with their aliases.
 fn sources(sql: &str, pieces: &[Token]) -> Vec<NamedTable> {
     let text = |at: usize| pieces.get(at).map_or("", |token| &sql[token.place.clone()]);
     let is_name = |at: usize| pieces.get(at).is_some_and(|token| token.kind == LexemeKind::Name);
@@ -151,18 +151,20 @@ fn sources(sql: &str, pieces: &[Token]) -> Vec<NamedTable> {
             true => at + 2,
             false => at + 1,
         };
-        // Without AS a second table name cannot be told from a forgotten comma.
+        // Without AS a second name could be a table after a forgotten comma.
         let name = if is_name(alias) { text(alias) } else { table.name.as_str() };
         found.push(NamedTable { name: name.to_owned(), table });
     }
     found
 }
 
-/// Names of common table expressions: a name before `AS (`.
+/// Returns the names of common table expressions: names before `AS (`.
 fn own_names(sql: &str, pieces: &[Token]) -> Vec<String> {
     let text = |token: &Token| sql[token.place.clone()].to_owned();
     let names = pieces.windows(3).filter(|three| {
-        three[0].kind == LexemeKind::Name && text(&three[1]).eq_ignore_ascii_case("as") && text(&three[2]) == "("
+        three[0].kind == LexemeKind::Name
+            && text(&three[1]).eq_ignore_ascii_case("as")
+            && text(&three[2]) == "("
     });
     names.map(|three| text(&three[0])).collect()
 }
@@ -171,7 +173,7 @@ fn own_names(sql: &str, pieces: &[Token]) -> Vec<String> {
 mod tests {
     use super::*;
 
-    /// Words offered where `|` stands.
+    /// Returns the suggestions at the `|`.
     fn words(marked: &str) -> Vec<String> {
         let place = marked.find('|').expect("a mark");
         let sql = marked.replace('|', "");

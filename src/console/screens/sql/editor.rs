@@ -1,4 +1,4 @@
-//! The editor of statements: colours, completion while typing, the place of an error.
+//! SQL editor with highlighting, completion and error positions.
 
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::Rect;
@@ -12,25 +12,22 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::Editor;
 use novamind_tui::widgets::table::first_row;
 
-/// Letters after which words are offered while typing.
+/// Minimum length of a word for suggestions while typing.
 const LEAST_TYPED: usize = 2;
-/// Candidates shown at once.
+/// Number of visible suggestions.
 const SHOWN: u16 = 8;
 
-/// A statement to ask, and where it begins in the text.
+/// A statement, and its position in the text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Statement {
-    /// Text.
     pub sql: String,
-    /// First byte in the editor.
+    /// Byte offset in the editor.
     pub from: usize,
 }
 
-/// The editor.
 pub struct QueryEditor {
     text: Editor,
     completion: Option<Completion>,
-    /// Where an error is, in bytes.
     mark: Option<usize>,
 }
 
@@ -41,17 +38,15 @@ impl Default for QueryEditor {
 }
 
 impl QueryEditor {
-    /// What it holds.
     pub fn text(&self) -> String {
         self.text.text()
     }
 
-    /// Whether it holds nothing but blanks.
+    /// Returns whether it contains only whitespace.
     pub fn is_blank(&self) -> bool {
         self.text.is_blank()
     }
 
-    /// Replaces what it holds.
     pub fn replace(&mut self, sql: &str) {
         self.text.replace(sql);
         self.changed();
@@ -61,7 +56,6 @@ impl QueryEditor {
         (self.completion, self.mark) = (None, None);
     }
 
-    /// Bytes before the cursor.
     fn place(&self) -> usize {
         let (row, column) = self.text.cursor();
         let lines = self.text.lines();
@@ -70,7 +64,7 @@ impl QueryEditor {
         above + before
     }
 
-    /// The statement at the cursor, if it says anything.
+    /// Returns the statement at the cursor; `None` if it is empty.
     pub fn statement(&self) -> Option<Statement> {
         let text = self.text();
         let (range, ..) = statement_at(&text, self.place());
@@ -80,13 +74,13 @@ impl QueryEditor {
         (!sql.is_empty()).then_some(Statement { sql, from })
     }
 
-    /// Number of the statement at the cursor, and of all.
+    /// Returns the index of the statement at the cursor, and the number of statements.
     pub fn count(&self) -> (usize, usize) {
         let (_, number, count) = statement_at(&self.text(), self.place());
         (number, count)
     }
 
-    /// Marks a place, given in bytes, and goes there.
+    /// Marks an error at a byte offset and moves the cursor there.
     pub fn mark(&mut self, place: usize) {
         let text = self.text();
         let place = (0..=place.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);
@@ -98,12 +92,11 @@ impl QueryEditor {
         self.mark = Some(place);
     }
 
-    /// Goes to its first letter.
+    /// Moves the cursor to the start.
     pub fn go_to_top(&mut self) {
         self.text.move_to(0, 0);
     }
 
-    /// Takes a key.
     pub fn key(&mut self, key: &KeyEvent) {
         if let Some(completion) = &mut self.completion {
             let last = completion.candidates.len() - 1;
@@ -121,7 +114,7 @@ impl QueryEditor {
         self.text.key(key);
         let types = match key.code {
             KeyCode::Char(letter) => is_word(letter) || letter == '.',
-            // Only within a word: going back over a line must not open anything.
+            // Deleting does not open suggestions.
             KeyCode::Backspace => self.completion.is_some(),
             _ => false,
         };
@@ -135,13 +128,12 @@ impl QueryEditor {
         self.completion = if types { complete(&self.text(), self.place(), LEAST_TYPED) } else { None };
     }
 
-    /// Takes pasted text.
     pub fn paste(&mut self, text: &str) {
         self.text.insert(text);
         self.changed();
     }
 
-    /// Puts the chosen candidate in, or offers some, or indents.
+    /// Inserts the selected suggestion, otherwise shows suggestions, otherwise indents.
     pub fn complete(&mut self) {
         match self.completion.take().or_else(|| complete(&self.text(), self.place(), 1)) {
             Some(completion) => {
@@ -157,12 +149,12 @@ impl QueryEditor {
         self.changed();
     }
 
-    /// Hides what is offered; whether there was something.
+    /// Hides the suggestions; returns whether there were any.
     pub fn hide_completion(&mut self) -> bool {
         self.completion.take().is_some()
     }
 
-    /// Puts a name at the cursor, apart from what stands before it.
+    /// Inserts a name at the cursor, separated from the text before it.
     pub fn insert_name(&mut self, name: &str, after_another: bool) {
         let text = self.text();
         let last = text[..self.place()].chars().next_back();
@@ -175,7 +167,7 @@ impl QueryEditor {
         self.changed();
     }
 
-    /// Draws the text in colours.
+    /// Draws the text with highlighting.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, editing: bool, hint: &str) {
         self.text.draw(canvas, area, editing, hint);
         if self.is_blank() || area.is_empty() {
@@ -193,7 +185,7 @@ impl QueryEditor {
         }
     }
 
-    /// Gives the cells of a piece of text a style; the text area has drawn them before.
+    /// Restyles a range of text that the text area has drawn.
     fn restyle(
         &self,
         canvas: &mut Canvas<'_>,
@@ -226,7 +218,7 @@ impl QueryEditor {
         }
     }
 
-    /// Draws what is offered next to the cursor, inside an area.
+    /// Draws the suggestions next to the cursor, inside an area.
     pub fn draw_completion(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let (Some(completion), Some(cursor)) = (&self.completion, canvas.cursor) else { return };
         let area = area.intersection(canvas.buffer.area);
@@ -309,7 +301,7 @@ mod tests {
         editor.mark("SELECT 'é日',\n  ".len());
         assert_eq!(editor.text.cursor(), (1, 2));
         editor.mark(9);
-        assert_eq!(editor.text.cursor(), (0, 8), "inside a letter: its beginning");
+        assert_eq!(editor.text.cursor(), (0, 8), "within a character the cursor moves to its start");
         editor.mark(999);
         assert_eq!(editor.place(), editor.text().len());
     }

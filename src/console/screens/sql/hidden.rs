@@ -1,8 +1,8 @@
-//! Statements that name tables of hidden state.
+//! Detection of statements that read hidden state.
 
 use novamind_tui::sql::{LexemeKind, Token, tokens};
 
-/// Whether a statement names a table of the x-ray: `hidden.groups`.
+/// Returns whether a statement contains the name of an x-ray table, such as `hidden.groups`.
 pub fn names_hidden(sql: &str) -> bool {
     let pieces: Vec<Token> =
         tokens(sql).into_iter().filter(|token| token.kind != LexemeKind::Comment).collect();
@@ -25,7 +25,9 @@ mod tests {
         for sql in ["SELECT * FROM hidden.groups", "select 1 from \"Hidden\" . drift", "x [hidden]/**/.pmi"] {
             assert!(names_hidden(sql), "{sql}");
         }
-        for sql in ["SELECT 'hidden.groups'", "SELECT hidden FROM x", "-- hidden.groups\nSELECT 1", "hidden", ""] {
+        for sql in
+            ["SELECT 'hidden.groups'", "SELECT hidden FROM x", "-- hidden.groups\nSELECT 1", "hidden", ""]
+        {
             assert!(!names_hidden(sql), "{sql}");
         }
     }

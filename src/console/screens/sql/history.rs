@@ -1,28 +1,27 @@
-//! Statements asked before and texts that were replaced in the editor, the newest first, to choose from.
+//! History of executed statements and replaced editor texts, newest first.
 
 use super::picker::{ListedQuery, Picker, in_a_line};
 use novamind_record::folder::library::{Head, body};
 
-/// Statements of this screen.
 #[derive(Default)]
 pub struct History {
-    /// The newest last.
+    /// Newest last.
     kept: Vec<Kept>,
 }
 
 struct Kept {
     sql: String,
-    /// It was replaced in the editor before it was asked.
+    /// Whether it was replaced in the editor without being run.
     draft: bool,
 }
 
 impl History {
-    /// Remembers a statement that is asked.
+    /// Adds an executed statement.
     pub fn remember(&mut self, sql: &str) {
         self.keep(sql, false);
     }
 
-    /// Remembers a text that was replaced, unless it has been asked as it was.
+    /// Adds a replaced text, unless it was run unchanged.
     pub fn remember_draft(&mut self, sql: &str) {
         let sql = sql.trim();
         if !sql.is_empty() && !self.kept.iter().any(|known| known.sql == sql && !known.draft) {
@@ -35,7 +34,8 @@ impl History {
         self.kept.push(Kept { sql: sql.to_owned(), draft });
     }
 
-    /// The list; `earlier` are statements of the run before, the newest last. None without any.
+    /// Returns a picker for the history; `earlier` are statements of previous sessions, newest last. Returns
+    /// `None` if both are empty.
     pub fn picker(&self, earlier: &[String]) -> Option<Picker> {
         let mut items: Vec<ListedQuery> = Vec::new();
         let own = self.kept.iter().rev().map(|kept| (kept.sql.as_str(), kept.draft));
@@ -50,11 +50,11 @@ impl History {
                 });
             }
         }
-        (!items.is_empty()).then(|| Picker::new("History", "puts it into the editor", items))
+        (!items.is_empty()).then(|| Picker::new("History", "insert", items))
     }
 }
 
-/// A statement in one line; a title at its head goes before it.
+/// Returns a statement in one line, with its title first.
 fn title(sql: &str) -> String {
     match Head::of(sql).title {
         Some(title) => format!("{title}: {}", in_a_line(body(sql))),

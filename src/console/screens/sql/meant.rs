@@ -1,27 +1,25 @@
-//! Which rows of a result a count or a pivot is made of: all of them, or those that the filter of the screen lets through,
-//! as far as SQL chooses the same ones.
+//! The rows of a result that a count or pivot covers: all rows, or those that pass the screen's filter if SQL
+//! can select the same rows.
 
 use super::picker::in_a_line;
 use novamind_database::{Cell, Rows};
 
-/// The rows that are meant.
+/// Rows of a result.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RowsMeant {
-    /// All: there is no filter.
     All,
-    /// Those that hold a text in one of some columns.
+    /// Rows with a text in at least one of some columns.
     Holding {
-        /// The text, in small letters.
+        /// The text in lower case.
         text: String,
-        /// Places of the columns.
         columns: Vec<usize>,
     },
-    /// All, although there is a filter: it looks at numbers as the screen writes them, and SQL does not know that form.
+    /// All rows, despite a filter: the filter matches formatted numbers, which SQL cannot reproduce.
     AllBesideFilter(String),
 }
 
 impl RowsMeant {
-    /// What a filter of the screen means; `shown` are the rows that it lets through.
+    /// Returns the rows that a filter selects; `shown` are the indexes of the rows that it shows.
     pub fn by(filter: &str, held: &Rows, shown: &[usize]) -> RowsMeant {
         if filter.is_empty() {
             return RowsMeant::All;
@@ -29,12 +27,14 @@ impl RowsMeant {
         let text = filter.to_lowercase();
         let all: Vec<usize> = (0..held.columns.len()).filter(|at| is_exact(held, *at)).collect();
         let chosen = |columns: &[usize]| -> Vec<usize> {
-            let holds = |row: &Vec<Cell>| columns.iter().any(|at| row.get(*at).is_some_and(|cell| cell_holds(cell, &text)));
+            let holds = |row: &Vec<Cell>| {
+                columns.iter().any(|at| row.get(*at).is_some_and(|cell| cell_holds(cell, &text)))
+            };
             (0..held.rows.len()).filter(|at| holds(&held.rows[*at])).collect()
         };
         let mut expected = shown.to_vec();
         expected.sort_unstable();
-        // Of rows that are not here nothing is known: a text without a letter might stand in any of their numbers.
+        // Rows beyond the limit are unknown, and a text without letters could match any of their numbers.
         let is_certain = !held.truncated || text.chars().any(char::is_alphabetic);
         if !is_certain || chosen(&all) != expected {
             return RowsMeant::AllBesideFilter(filter.to_owned());
@@ -43,7 +43,7 @@ impl RowsMeant {
         RowsMeant::Holding { text, columns: one.map_or(all, |at| vec![at]) }
     }
 
-    /// The clause that chooses them, with a line end before it; `names` are the columns as SQL writes them.
+    /// Returns the SQL clause with a leading line break; `names` are the column names in SQL.
     pub fn clause(&self, names: &[String]) -> String {
         let RowsMeant::Holding { text, columns } = self else { return String::new() };
         let text = text.replace('\'', "''");
@@ -51,7 +51,7 @@ impl RowsMeant {
         format!("\nWHERE {}", columns.iter().filter_map(holds).collect::<Vec<_>>().join("\n    OR "))
     }
 
-    /// In words behind a title; empty where nothing has to be said.
+    /// Returns the suffix for titles; empty if there is no filter.
     pub fn in_words(&self) -> String {
         match self {
             RowsMeant::All => String::new(),
@@ -60,19 +60,19 @@ impl RowsMeant {
         }
     }
 
-    /// Why the filter has no part in it, where there is one.
+    /// Returns a warning if the filter is ignored.
     pub fn warning(&self) -> Option<String> {
         let RowsMeant::AllBesideFilter(filter) = self else { return None };
-        Some(format!("all rows, without the filter \"{filter}\": SQL cannot tell which rows it shows"))
+        Some(format!("all rows, without the filter \"{filter}\": SQL cannot select the rows that it shows"))
     }
 }
 
-/// Whether SQL sees the values of a column as they are: decimals are rounded on the screen.
+/// Returns whether SQL sees the values of a column as displayed; decimals are rounded on the screen.
 fn is_exact(held: &Rows, at: usize) -> bool {
     held.rows.iter().all(|row| !matches!(row.get(at), Some(Cell::Real(_))))
 }
 
-/// What `instr(lower(cell), text) > 0` says: `lower` changes the letters of ASCII alone.
+/// Equivalent to `instr(lower(cell), text) > 0`; SQLite's `lower` changes ASCII letters only.
 fn cell_holds(cell: &Cell, text: &str) -> bool {
     match cell {
         Cell::Text(own) => own.to_ascii_lowercase().contains(text),
@@ -89,7 +89,7 @@ mod tests {
     use crate::test_kit::session;
     use novamind_tui::widgets::Table;
 
-    /// What a filter means, and the rows it shows.
+    /// Returns the rows that a filter selects, and the number of shown rows.
     fn meant(held: &Rows, filter: &str) -> (RowsMeant, usize) {
         let mut table = Table::new(values::columns(held));
         table.set_rows(values::cells(held));
@@ -107,10 +107,10 @@ mod tests {
         for (filter, shown, told) in [
             ("ada's", 1, true),
             ("12", 2, false),  // in 12.0, and not in 1,234
-            ("1,2", 1, false), // as the screen writes 1234
+            ("1,2", 1, false), // the screen shows 1234 with a separator
             ("34", 1, true),
             ("gr", 2, true),
-            ("ü", 2, false), // lower knows no Ü
+            ("ü", 2, false), // lower does not convert Ü
             ("null", 1, false),
             ("nothing", 0, true),
         ] {

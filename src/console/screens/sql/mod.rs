@@ -1,4 +1,4 @@
-//! The database: tables on the left, a statement above, its result below.
+//! SQL queries: tables at the left, the statement above its result.
 
 mod browser;
 mod completion;
@@ -25,39 +25,39 @@ use std::time::{Duration, Instant};
 use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
-use super::panes::{Pane, Paned, draw_pane};
-use crate::context::Look;
 use super::ScreenState;
+use super::panes::{Pane, Paned, draw_pane};
 use crate::action::Action;
+use crate::context::Look;
 use crate::effect::Effect;
 use browser::Browser;
 use editor::{QueryEditor, Statement};
-use history::History;
 use hidden::names_hidden;
-use over::Over;
-use tabs::Tabs;
+use history::History;
 use novamind_record::folder::library::Library;
 use novamind_record::trajectory::record::QuerySource;
 use novamind_tui::canvas::Canvas;
 use novamind_worker::asking::Pending;
 use novamind_worker::queries::{QueriedTables, Query};
+use over::Over;
+use tabs::Tabs;
 
-/// Its panes, in the order of the tab key.
+/// Panes in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
 pub enum SqlPane {
     /// The statement.
     #[default]
     Editor,
-    /// What came of it.
+    /// Results.
     Results,
-    /// The tables and their columns.
+    /// Tables and columns.
     Tables,
 }
 
-/// Below this width the tables are shown only while they are used.
+/// Below this width the tables are visible only while they have the focus.
 const WIDE: u16 = 90;
 
-/// A statement that is being answered: the text of the editor when it was asked, and the statement in it.
+/// A running statement, and the editor text when it was started.
 struct Running {
     text: String,
     statement: Statement,
@@ -65,7 +65,7 @@ struct Running {
     answer: Pending<Query>,
 }
 
-/// The screen.
+/// The SQL screen.
 pub struct Sql {
     editor: QueryEditor,
     results: Tabs,
@@ -75,11 +75,11 @@ pub struct Sql {
     over: Option<Over>,
     focus: SqlPane,
     running: Option<Running>,
-    /// The last thing that happened was a column put in from the tables: another one follows after a comma.
+    /// Whether the last action inserted a column from the tables; another one then follows after a comma.
     column_put_in: bool,
-    /// The statement that was made of a result last.
+    /// The last statement that was derived from a result.
     derived: String,
-    /// Hidden state may be shown: the tables of the x-ray can be asked.
+    /// Whether the run permits queries of x-ray tables.
     may_look_inside: bool,
 }
 
@@ -102,12 +102,12 @@ impl Default for Sql {
 }
 
 impl Sql {
-    /// Takes the named queries.
+    /// Stores the named queries.
     pub fn learn(&mut self, library: Library) {
         self.library = library;
     }
 
-    /// Puts a statement into the editor; what was in it is kept among the earlier ones.
+    /// Replaces the editor text; the old text is added to the history.
     pub fn edit(&mut self, sql: &str) {
         if self.editor.text().trim() != sql.trim() {
             self.history.remember_draft(&self.editor.text());
@@ -117,38 +117,38 @@ impl Sql {
         self.focus = SqlPane::Editor;
     }
 
-    /// Puts a statement into the editor and runs it.
+    /// Replaces the editor text and runs it.
     pub fn edit_and_run(&mut self, sql: &str) -> Vec<Effect> {
         self.edit(sql);
         self.editor.go_to_top();
-        // Nothing was typed: the keys are those of the result.
+        // The user did not type, so the result takes the focus.
         self.focus = SqlPane::Results;
         self.run()
     }
 
-    /// Puts a statement into the editor that was made of a result, and runs it.
+    /// Replaces the editor text with a derived statement and runs it.
     fn edit_and_run_derived(&mut self, sql: &str) -> Vec<Effect> {
         self.derived = sql.trim().to_owned();
         self.edit_and_run(sql)
     }
 
-    /// What stands in the editor.
+    /// Returns the editor text.
     pub fn unsent(&self) -> String {
         self.editor.text()
     }
 
-    /// Whether a statement is being answered.
+    /// Returns whether a statement is running.
     pub fn is_running(&self) -> bool {
         self.running.is_some()
     }
 
     fn run(&mut self) -> Vec<Effect> {
         if self.running.is_some() {
-            return vec![Effect::Complain("a query is running; esc cancels it".to_owned())];
+            return vec![Effect::Complain("A query is running. Cancel it with esc.".to_owned())];
         }
         self.editor.hide_completion();
         let Some(statement) = self.editor.statement() else {
-            return vec![Effect::Complain("no statement to run: type one first".to_owned())];
+            return vec![Effect::Complain("No statement to run. Type one first.".to_owned())];
         };
         self.history.remember(&statement.sql);
         let of = self.tables_of(&statement.sql);
@@ -157,7 +157,7 @@ impl Sql {
         vec![Effect::SentText("sql"), Effect::Ask(ask)]
     }
 
-    /// Whether a statement asks the tables of the x-ray, and may.
+    /// Returns whether a statement reads x-ray tables and the run permits it.
     fn looks_inside(&self, sql: &str) -> bool {
         self.may_look_inside && names_hidden(sql)
     }
@@ -209,7 +209,7 @@ impl ScreenState for Sql {
         let answer = self.running.as_mut().and_then(|running| running.answer.try_take());
         let Some((_, answer)) = answer else { return Vec::new() };
         let Some(running) = self.running.take() else { return Vec::new() };
-        // The place of an error is shown only in the text it belongs to.
+        // An error position is valid only for the text that was run.
         if let Err(refusal) = &answer
             && let Some(place) = results::place_of(refusal)
             && self.editor.text() == running.text

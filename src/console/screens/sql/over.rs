@@ -1,4 +1,4 @@
-//! What lies over the panes: earlier statements, named queries, the name of one that is saved, ways to export.
+//! Overlays: history, named queries, save dialog, export, pivot.
 
 use crossterm::event::KeyEvent;
 
@@ -8,29 +8,22 @@ use super::pivot::{PivotChoice, PivotStep};
 use super::saving::Saving;
 use super::takeout::TakeOut;
 use crate::action::{Action, Scope};
-use crate::effect::Effect;
 use crate::context::Look;
+use crate::effect::Effect;
 use crate::screens::panes::{Pane, Seat};
 use novamind_record::folder::library::NamedQuery;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Field;
 
-/// What lies over the panes.
 pub enum Over {
-    /// Statements asked before.
     Earlier(Picker),
-    /// Named queries.
     Library(Picker),
-    /// The name of a statement that is saved.
     Saving(Saving),
-    /// Ways to take a result out.
     TakeOut(TakeOut),
-    /// What a pivot is made of.
     Pivot(PivotChoice),
 }
 
 impl Over {
-    /// How it acts and is drawn.
     pub fn pane(&self) -> &'static dyn Pane<Sql> {
         match self {
             Over::Earlier(_) | Over::Library(_) => &PickerPane,
@@ -41,7 +34,7 @@ impl Over {
     }
 }
 
-/// A list of statements to choose from by typing.
+/// List of statements with search.
 struct PickerPane;
 
 impl Pane<Sql> for PickerPane {
@@ -55,7 +48,7 @@ impl Pane<Sql> for PickerPane {
 
     fn act(&self, sql: &mut Sql, action: Action, look: &Look<'_>) -> Vec<Effect> {
         match (&mut sql.over, action) {
-            // The same key again goes on to the next one; the other one changes the list.
+            // The same key selects the next statement; the other key switches the list.
             (Some(Over::Earlier(picker)), Action::History) => picker.next(),
             (Some(Over::Library(picker)), Action::Library) => picker.next(),
             (Some(Over::Earlier(_)), Action::Library) => sql.find_named(),
@@ -100,7 +93,6 @@ impl Pane<Sql> for PickerPane {
     }
 }
 
-/// The name of a statement that is saved.
 struct SavingPane;
 
 impl Pane<Sql> for SavingPane {
@@ -137,7 +129,6 @@ impl Pane<Sql> for SavingPane {
     }
 }
 
-/// Ways to take a result out.
 struct TakeOutPane;
 
 impl Pane<Sql> for TakeOutPane {
@@ -173,7 +164,6 @@ impl Pane<Sql> for TakeOutPane {
     }
 }
 
-/// What a pivot is made of.
 struct PivotPane;
 
 impl PivotPane {
@@ -225,7 +215,7 @@ impl Sql {
                 self.over = Some(Over::Earlier(picker));
                 Vec::new()
             }
-            None => vec![Effect::Say("no queries in this run yet: f5 runs a statement".to_owned())],
+            None => vec![Effect::Say("No queries in this run yet. Run a statement with f5.".to_owned())],
         }
     }
 
@@ -239,13 +229,13 @@ impl Sql {
             sql: query.sql.clone(),
         };
         let items = self.library.queries().iter().map(item).collect();
-        self.over = Some(Over::Library(Picker::new("Library", "runs it", items)));
+        self.over = Some(Over::Library(Picker::new("Library", "run", items)));
     }
 
     pub(super) fn save(&mut self) -> Vec<Effect> {
         self.editor.hide_completion();
         let Some(statement) = self.editor.statement() else {
-            return vec![Effect::Complain("no statement to save: type one first".to_owned())];
+            return vec![Effect::Complain("No statement to save. Type one first.".to_owned())];
         };
         self.over = Some(Over::Saving(Saving::of(statement.sql)));
         Vec::new()
@@ -253,13 +243,13 @@ impl Sql {
 
     pub(super) fn take_out(&mut self) -> Vec<Effect> {
         if !self.results.shown().has_rows() {
-            return vec![Effect::Complain("no result to export: run a statement first".to_owned())];
+            return vec![Effect::Complain("No result to export. Run a statement first.".to_owned())];
         }
         self.over = Some(Over::TakeOut(TakeOut::default()));
         Vec::new()
     }
 
-    /// An earlier statement is put into the editor; a named query is run too.
+    /// Inserts a statement from the history, or inserts and runs a named query.
     fn choose(&mut self, choice: PickedQuery) -> Vec<Effect> {
         let named = matches!(self.over, Some(Over::Library(_)));
         match choice {

@@ -1,4 +1,4 @@
-//! The panes: the statement, its result, the tables.
+//! Panes of the SQL screen: editor, result and tables.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::layout::Rect;
@@ -8,17 +8,16 @@ use super::pivot::PivotChoice;
 use super::summary::{NOT_A_TABLE, count};
 use super::{Sql, SqlPane};
 use crate::action::{Action, Scope};
-use crate::effect::Effect;
 use crate::context::Look;
+use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
 use novamind_record::folder::library::Head;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::{Field, Table};
 
-const NO_RESULT: &str = "no result yet: run a statement first";
-const REFUSED: &str = "the last statement was refused: it has no rows";
+const NO_RESULT: &str = "No result yet. Run a statement first.";
+const REFUSED: &str = "The last statement failed and has no rows.";
 
-/// The statement.
 pub struct EditorPane;
 
 impl Pane<Sql> for EditorPane {
@@ -31,7 +30,7 @@ impl Pane<Sql> for EditorPane {
     }
 
     fn act(&self, sql: &mut Sql, action: Action, _: &Look<'_>) -> Vec<Effect> {
-        // The wheel turns over the editor.
+        // The wheel scrolls the editor.
         let turn = |code| KeyEvent::new(code, KeyModifiers::NONE);
         match action {
             Action::Complete => sql.editor.complete(),
@@ -79,7 +78,6 @@ impl Pane<Sql> for EditorPane {
     }
 }
 
-/// What came of it.
 pub struct ResultsPane;
 
 impl Pane<Sql> for ResultsPane {
@@ -145,7 +143,6 @@ impl Pane<Sql> for ResultsPane {
     }
 }
 
-/// The tables and their columns.
 pub struct TablesPane;
 
 impl Pane<Sql> for TablesPane {
@@ -191,19 +188,19 @@ impl Pane<Sql> for TablesPane {
 }
 
 impl Sql {
-    /// What is done with results as a whole: going from one to another, keeping, closing, asking more of them.
+    /// Runs actions on whole results: switch, pin, close, derive a query.
     fn act_on_results(&mut self, action: Action) -> Option<Vec<Effect>> {
         match action {
             Action::PreviousResult => self.results.walk(false),
             Action::NextResult => self.results.walk(true),
             Action::CloseResult if !self.results.close() => {
-                return Some(vec![Effect::Complain("no result to close".to_owned())]);
+                return Some(vec![Effect::Complain("No result to close".to_owned())]);
             }
             Action::CloseResult => {}
             Action::PinResult => {
                 return Some(vec![match self.results.pin() {
-                    Ok(true) => Effect::Say("pinned: this result stays until it is closed".to_owned()),
-                    Ok(false) => Effect::Say("unpinned".to_owned()),
+                    Ok(true) => Effect::Say("Pinned: this result stays until you close it".to_owned()),
+                    Ok(false) => Effect::Say("Unpinned".to_owned()),
                     Err(why) => Effect::Complain(why),
                 }]);
             }
@@ -217,7 +214,7 @@ impl Sql {
         Some(Vec::new())
     }
 
-    /// Counts the focused column, or asks what its pivot is made of.
+    /// Counts the values of the focused column, or opens the setup of a pivot.
     fn sum_up(&mut self, action: Action) -> Vec<Effect> {
         let complain = |text: &str| vec![Effect::Complain(text.to_owned())];
         let shown = self.results.shown();
@@ -227,7 +224,7 @@ impl Sql {
         let meant = shown.rows_meant();
         let warning = meant.warning().map(Effect::Say);
         if self.is_running() {
-            return complain("a query is running; esc cancels it");
+            return complain("A query is running. Cancel it with esc.");
         }
         if action == Action::Pivot {
             match PivotChoice::of(sql, shown.held(&meant), at, meant) {
@@ -242,7 +239,6 @@ impl Sql {
         effects
     }
 
-    /// Puts the selected name of the tables into the editor.
     fn put_in(&mut self) {
         let Some(entry) = self.browser.selected() else { return };
         if self.editor.is_blank() && entry.column().is_none() {

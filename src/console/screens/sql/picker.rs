@@ -1,4 +1,4 @@
-//! A list to choose a statement from: found by typing, the chosen one shown in full.
+//! A list of statements with search and a preview.
 
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -14,55 +14,50 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;
 use novamind_tui::widgets::table::first_row;
 
-/// Below this width the chosen statement stands under the list instead of beside it.
+/// Below this width the preview is under the list instead of next to it.
 const BESIDE: u16 = 110;
 
-/// Something to choose.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ListedQuery {
-    /// Where it comes from, in a word; empty for most.
+    /// Origin in a word; usually empty.
     pub tag: &'static str,
-    /// What is listed and searched first.
     pub title: String,
-    /// What one learns from it.
     pub what: String,
-    /// What is shown of the statement.
+    /// Preview of the statement.
     pub preview: String,
-    /// The statement.
     pub sql: String,
 }
 
-/// The list.
 pub struct Picker {
     title: &'static str,
-    /// What enter does, for the lower border.
+    /// Label of the enter key.
     enter: &'static str,
     items: Vec<ListedQuery>,
-    /// What is searched besides the title: explanation and statement in one line.
+    /// Searchable text besides the title: explanation and statement in one line.
     texts: Vec<String>,
     field: Field,
     found: Vec<Found>,
     selected: usize,
 }
 
-/// What came of an action.
+/// Result of an action.
 #[derive(Debug, PartialEq, Eq)]
 pub enum PickedQuery {
-    /// Nothing yet.
+    /// The list stays open.
     None,
-    /// The list is left without a choice.
+    /// The list closes without a choice.
     Closed,
-    /// This statement.
+    /// The chosen statement.
     Statement(String),
 }
 
-/// A text in one line.
+/// Collapses whitespace to make one line.
 pub fn in_a_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 impl Picker {
-    /// A list under a title; `enter` says what follows from a choice.
+    /// Creates a list; `enter` is the label of the enter key.
     pub fn new(title: &'static str, enter: &'static str, items: Vec<ListedQuery>) -> Picker {
         let text = |item: &ListedQuery| format!("{} {}", item.what, in_a_line(&item.preview));
         let texts = items.iter().map(text).collect();
@@ -72,12 +67,10 @@ impl Picker {
         picker
     }
 
-    /// The field that is typed into.
     pub fn field(&mut self) -> &mut Field {
         &mut self.field
     }
 
-    /// Looks for what is typed.
     pub fn find(&mut self) {
         let all = self.items.iter().zip(&self.texts);
         self.found =
@@ -85,7 +78,7 @@ impl Picker {
         self.selected = 0;
     }
 
-    /// The next one; after the last the first.
+    /// Selects the next entry, cyclically.
     pub fn next(&mut self) {
         self.selected = if self.selected + 1 < self.found.len() { self.selected + 1 } else { 0 };
     }
@@ -94,12 +87,13 @@ impl Picker {
         self.found.get(self.selected).map(|(at, _)| &self.items[*at])
     }
 
-    /// Walks and chooses.
     pub fn act(&mut self, action: Action) -> PickedQuery {
         let last = self.found.len().saturating_sub(1);
         match action {
             Action::Commit => {
-                return self.chosen().map_or(PickedQuery::None, |item| PickedQuery::Statement(item.sql.clone()));
+                return self
+                    .chosen()
+                    .map_or(PickedQuery::None, |item| PickedQuery::Statement(item.sql.clone()));
             }
             Action::Discard => return PickedQuery::Closed,
             Action::CommitDown | Action::CommitNext | Action::Down => {
@@ -111,7 +105,7 @@ impl Picker {
         PickedQuery::None
     }
 
-    /// Takes a key that is typed; pages are walked.
+    /// Handles a typed key; page keys move the selection.
     pub fn key(&mut self, key: &KeyEvent, page: u16) {
         let (page, last) = (page.max(1) as usize, self.found.len().saturating_sub(1));
         match key.code {
@@ -122,7 +116,6 @@ impl Picker {
         }
     }
 
-    /// A row was clicked.
     pub fn click(&mut self, row: usize) -> PickedQuery {
         self.selected = row.min(self.found.len().saturating_sub(1));
         self.act(Action::Commit)
@@ -154,7 +147,7 @@ impl Picker {
     fn draw_list(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize) {
         canvas.page = area.height.max(1);
         if self.found.is_empty() {
-            canvas.text(area, "no match; backspace widens the search", Role::Dim);
+            canvas.text(area, "No match", Role::Dim);
         }
         let tags = self.items.iter().map(|item| item.tag.width()).max().unwrap_or(0) as u16;
         let from = first_row(self.selected, area.height as usize, self.found.len());
@@ -194,7 +187,7 @@ impl Picker {
                 let Some(row) = rows.next() else { return };
                 canvas.text(row, &line, Role::Strong);
             }
-            // A blank row where there is room for it.
+            // A blank row if it fits.
             if inside.height > 8 {
                 rows.next();
             }
@@ -205,7 +198,7 @@ impl Picker {
     }
 }
 
-/// A statement in lines of at most a width, in the colours of the editor; what goes on in another line is indented.
+/// Returns a highlighted statement, wrapped with indented continuation lines.
 fn coloured(canvas: &Canvas<'_>, sql: &str, width: usize) -> Vec<Line<'static>> {
     const INDENT: &str = "        ";
     let mut lines = vec![Line::default()];

@@ -1,4 +1,4 @@
-//! What a pivot is made of, chosen in few keys: the focused column gives the rows, the rest is proposed.
+//! Setup of a pivot: the focused column gives the rows, the rest has defaults.
 
 use ratatui::layout::Rect;
 
@@ -11,15 +11,15 @@ use novamind_database::{Cell, Rows};
 use novamind_tui::canvas::{Canvas, Click, centered, rows_of};
 use novamind_tui::theme::Role;
 
-/// Lines that can be changed, and the one that runs the pivot.
+/// Number of lines: the options, and the one that runs the pivot.
 const LINES: usize = 4;
 const RUN: usize = LINES - 1;
 
-/// A pivot that is being chosen.
+/// A pivot being set up.
 pub struct PivotChoice {
     sql: String,
     meant: RowsMeant,
-    /// Of the rows that are meant those that are held.
+    /// Available rows of those that the pivot covers.
     held: Rows,
     shape: PivotShape,
     /// Columns that can be aggregated.
@@ -27,19 +27,19 @@ pub struct PivotChoice {
     line: usize,
 }
 
-/// What a choice asks for.
+/// Result of an action.
 #[derive(Debug, PartialEq, Eq)]
 pub enum PivotStep {
-    /// To be chosen on.
+    /// The setup stays open.
     Choosing,
-    /// It is left.
+    /// The setup closes.
     Left,
-    /// This statement is to be run.
+    /// Runs this statement.
     Run(String),
 }
 
 impl PivotChoice {
-    /// A pivot of the rows that are meant of the result of a statement, by one of its columns; none where it cannot be
+    /// Returns the setup of a pivot by a column of a result. Returns `None` if the statement cannot be
     /// pivoted.
     pub fn of(sql: &str, held: Rows, rows: usize, meant: RowsMeant) -> Option<PivotChoice> {
         let numeric: Vec<usize> =
@@ -50,15 +50,15 @@ impl PivotChoice {
         };
         let is_real = |at: usize| held.rows.iter().any(|row| matches!(row.get(at), Some(Cell::Real(_))));
         let across = (0..held.columns.len()).filter(|at| !is_real(*at)).find(few);
-        let values = numeric.iter().copied().find(|at| Some(*at) != across && !names_something(&held.columns[*at]));
+        let values =
+            numeric.iter().copied().find(|at| Some(*at) != across && !names_something(&held.columns[*at]));
         let aggregate = if values.is_some() { Aggregate::Sum } else { Aggregate::Count };
         let shape = PivotShape { rows, across, values, aggregate };
-        // Only where a statement comes of it is there something to choose.
+        // Do not open the setup if no statement can be derived.
         pivot(sql, &held, shape, &meant)?;
         Some(PivotChoice { sql: sql.to_owned(), meant, held, shape, numeric, line: 0 })
     }
 
-    /// Walks over the lines, changes one, runs or leaves.
     pub fn act(&mut self, action: Action) -> PivotStep {
         match action {
             Action::Up => self.line = self.line.saturating_sub(1),
@@ -66,7 +66,8 @@ impl PivotChoice {
             Action::Left => self.turn(false),
             Action::Right => self.turn(true),
             Action::Open => {
-                return pivot(&self.sql, &self.held, self.shape, &self.meant).map_or(PivotStep::Left, PivotStep::Run);
+                return pivot(&self.sql, &self.held, self.shape, &self.meant)
+                    .map_or(PivotStep::Left, PivotStep::Run);
             }
             Action::Close => return PivotStep::Left,
             _ => {}
@@ -74,7 +75,7 @@ impl PivotChoice {
         PivotStep::Choosing
     }
 
-    /// A line was clicked: a line that is selected already changes.
+    /// Handles a click on a line; clicking the selected line changes it.
     pub fn click(&mut self, line: usize) -> PivotStep {
         let again = self.line == line;
         self.line = line.min(RUN);
@@ -85,7 +86,7 @@ impl PivotChoice {
         }
     }
 
-    /// Changes the selected line to the next choice, or to the one before.
+    /// Changes the selected line to its next or previous option.
     fn turn(&mut self, on: bool) {
         let shape = &mut self.shape;
         match self.line {
@@ -126,7 +127,7 @@ impl PivotChoice {
         ]
     }
 
-    /// Draws the choice over the screen.
+    /// Draws the setup over the screen.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize, look: &Look<'_>) {
         let own = centered(area, 56, LINES as u16 + 2);
         canvas.clear(own, Role::Text);
@@ -149,17 +150,20 @@ impl PivotChoice {
         }
         let key = |action| look.keys.label(action).unwrap_or_default();
         let [open, left, right] = [Action::Open, Action::Left, Action::Right].map(key);
-        canvas.pane_keys(own, &format!("{open} run · {left} {right} change · {}", look.hints(&[Action::Close])));
+        canvas.pane_keys(
+            own,
+            &format!("{open} run · {left} {right} change · {}", look.hints(&[Action::Close])),
+        );
     }
 }
 
-/// Whether the numbers of a column name something, such as a day, and are not worth adding up.
+/// Returns whether the numbers of a column are identifiers, such as days, which are not summed.
 fn names_something(column: &str) -> bool {
     const NAMES: [&str; 6] = ["id", "day", "week", "month", "number", "mod30"];
     column.to_lowercase().split(|letter: char| !letter.is_alphanumeric()).any(|word| NAMES.contains(&word))
 }
 
-/// The choice after one, or before it, round.
+/// Returns the next or previous option, cyclically.
 fn next_of<T: PartialEq + Copy>(all: impl Iterator<Item = T>, now: T, on: bool) -> T {
     let all: Vec<T> = all.collect();
     let at = all.iter().position(|own| *own == now).unwrap_or(0);
@@ -186,8 +190,10 @@ mod tests {
     fn two_keys_give_the_pivot_that_is_likely() {
         let mut choice = PivotChoice::of("SELECT * FROM t", held(), 0, RowsMeant::All).expect("a choice");
         let shape = PivotShape { rows: 0, across: Some(1), values: Some(3), aggregate: Aggregate::Sum };
-        assert_eq!(choice.shape, shape, "neither days nor decimals are columns, days are not added up");
-        assert!(matches!(choice.act(Action::Open), PivotStep::Run(sql) if sql.contains("sum(amount) FILTER")));
+        assert_eq!(choice.shape, shape, "days and decimals are not used as columns, and days are not summed");
+        assert!(
+            matches!(choice.act(Action::Open), PivotStep::Run(sql) if sql.contains("sum(amount) FILTER"))
+        );
         assert_eq!(choice.act(Action::Close), PivotStep::Left);
         assert!(PivotChoice::of("EXPLAIN QUERY PLAN SELECT 1", held(), 0, RowsMeant::All).is_none());
     }
@@ -198,7 +204,7 @@ mod tests {
         choice.act(Action::Left);
         assert_eq!(choice.shape.across, None);
         choice.act(Action::Left);
-        assert_eq!(choice.shape.across, Some(3), "round");
+        assert_eq!(choice.shape.across, Some(3), "options wrap around");
         choice.act(Action::Down);
         choice.act(Action::Right);
         assert_eq!((choice.shape.values, choice.shape.aggregate), (None, Aggregate::Count));

@@ -1,12 +1,12 @@
-//! A result as a chart: columns are chosen, lines or bars drawn, and the figures said in words above them.
+//! Charts of a result: choice of columns, lines or bars, and a summary above them.
 
 use ratatui::layout::Rect;
 
 use super::values::{decimals_shown, is_numeric};
 use crate::screens::panes::Seat;
 use novamind_base::notation::{compact, grouped};
-use novamind_record::folder::library::{ChartKind, ChartLine};
 use novamind_database::{Cell, Rows};
+use novamind_record::folder::library::{ChartKind, ChartLine};
 use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
 use novamind_tui::text::{arrow, number};
 use novamind_tui::theme::Role;
@@ -15,20 +15,18 @@ use novamind_tui::widgets::chart::zero_if_near;
 use novamind_tui::widgets::table::first_row;
 use novamind_tui::widgets::{Axis, Line, Side, Table, Unit, chart};
 
-/// Most series at once: more cannot be told apart.
+/// Maximum number of series; more are hard to distinguish.
 const MOST: usize = 6;
 
-/// What is drawn.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PlottedColumns {
     kind: ChartKind,
-    /// Column along which it is drawn; the rows themselves without one.
+    /// Column of the x axis; `None` for the row index.
     x: Option<usize>,
-    /// Columns that are drawn, at least one.
+    /// Plotted columns, at least one.
     ys: Vec<usize>,
 }
 
-/// Columns of numbers.
 fn numeric(rows: &Rows) -> Vec<usize> {
     (0..rows.columns.len()).filter(|at| is_numeric(rows, *at)).collect()
 }
@@ -42,9 +40,12 @@ fn value(rows: &Rows, row: usize, column: usize) -> Option<f64> {
 }
 
 impl PlottedColumns {
-    /// The chart that a statement proposes, or the likeliest one. None without a column of numbers.
+    /// Returns the chart that a statement specifies, otherwise a default. Returns `None` without a numeric
+    /// column.
     pub fn of(rows: &Rows, proposed: Option<&ChartLine>) -> Option<PlottedColumns> {
-        proposed.and_then(|line| PlottedColumns::proposed(rows, line)).or_else(|| PlottedColumns::likeliest(rows))
+        proposed
+            .and_then(|line| PlottedColumns::proposed(rows, line))
+            .or_else(|| PlottedColumns::likeliest(rows))
     }
 
     fn proposed(rows: &Rows, line: &ChartLine) -> Option<PlottedColumns> {
@@ -63,13 +64,13 @@ impl PlottedColumns {
         Some(PlottedColumns { kind, x, ys: vec![y] })
     }
 
-    /// Another column along which it is drawn.
+    /// Selects the next column for the x axis.
     pub fn next_x(&mut self, rows: &Rows) {
         let free: Vec<usize> = (0..rows.columns.len()).filter(|at| !self.ys.contains(at)).collect();
         let next = free.iter().copied().find(|at| self.x.is_none_or(|x| *at > x));
         self.x = match next {
             Some(at) => Some(at),
-            // After the last column the rows themselves, then the first column again.
+            // The row index follows the last column.
             None if self.x.is_some() => None,
             None => free.first().copied(),
         };
@@ -83,7 +84,7 @@ impl PlottedColumns {
         free.iter().copied().find(|at| *at > column).or_else(|| free.first().copied())
     }
 
-    /// Another column in the place of the last series.
+    /// Replaces the last series with the next column.
     pub fn next_y(&mut self, rows: &Rows) {
         if let Some(last) = self.ys.last().copied()
             && let Some(next) = self.after(rows, last)
@@ -93,7 +94,7 @@ impl PlottedColumns {
         }
     }
 
-    /// One more series; false if there is no other column, or no room.
+    /// Adds a series; returns false if there is no other column or no room.
     pub fn more(&mut self, rows: &Rows) -> bool {
         let last = self.ys.last().copied().unwrap_or(0);
         let next = self.after(rows, last).filter(|next| !self.ys.contains(next) && self.ys.len() < MOST);
@@ -101,14 +102,14 @@ impl PlottedColumns {
         next.is_some()
     }
 
-    /// One series less, down to one.
+    /// Removes a series, but not the last one.
     pub fn fewer(&mut self) {
         if self.ys.len() > 1 {
             self.ys.pop();
         }
     }
 
-    /// Bars instead of lines, or lines instead of bars.
+    /// Switches between lines and bars.
     pub fn other_kind(&mut self) {
         self.kind = match self.kind {
             ChartKind::Line => ChartKind::Bar,
@@ -116,7 +117,7 @@ impl PlottedColumns {
         };
     }
 
-    /// The first column that is drawn.
+    /// Returns the first plotted column.
     pub fn first_y(&self) -> usize {
         self.ys[0]
     }
@@ -129,7 +130,7 @@ impl PlottedColumns {
         }
     }
 
-    /// `█ leads · ▒ signed by channel`.
+    /// Returns a title such as `█ leads · ▒ signed by channel`.
     pub fn title(&self, rows: &Rows) -> String {
         let names = self.ys.iter().enumerate();
         let names: Vec<String> =
@@ -138,7 +139,7 @@ impl PlottedColumns {
         format!("{} by {along}", names.join(" · "))
     }
 
-    /// Name of a row: its value of x as the table shows it.
+    /// Returns the label of a row: its x value as in the table.
     fn name(&self, table: &Table, row: usize) -> String {
         match self.x {
             Some(at) => table.rows()[row].get(at).map_or(String::new(), |cell| cell.text.clone()),
@@ -146,7 +147,7 @@ impl PlottedColumns {
         }
     }
 
-    /// Rows in the order in which they are drawn: along x if that is a number, as the table shows them otherwise.
+    /// Returns the rows in drawing order: by x if it is numeric, otherwise as in the table.
     fn order(&self, rows: &Rows, table: &Table) -> Vec<usize> {
         let mut order = table.shown().to_vec();
         if self.kind == ChartKind::Line
@@ -158,7 +159,6 @@ impl PlottedColumns {
         order
     }
 
-    /// What a series shows, in words.
     fn summary(&self, rows: &Rows, table: &Table, column: usize) -> String {
         let order = self.order(rows, table);
         let known: Vec<(usize, f64)> =
@@ -169,7 +169,7 @@ impl PlottedColumns {
             return format!("{name}: no numbers");
         };
         let decimals = decimals_shown(rows, column);
-        // Large numbers in three digits: the words must fit above the chart, the rows have every digit.
+        // Large numbers have three digits to fit above the chart; the table has all digits.
         let written = |value: f64| match value.abs() {
             large if large >= 100_000.0 => compact(value),
             _ => grouped(value, decimals),
@@ -201,10 +201,10 @@ impl PlottedColumns {
         )
     }
 
-    /// Draws the words, and the chart below them.
+    /// Draws the summary and the chart.
     pub fn draw(&self, canvas: &mut Canvas<'_>, seat: Seat, rows: &Rows, table: &Table) {
         let area = seat.area;
-        // The chart needs some rows more than the words above it.
+        // The chart needs a minimum of rows below the summary.
         let said = self.ys.len().min(usize::from(area.height.saturating_sub(5)));
         for (row, (series, column)) in rows_of(area).zip(self.ys.iter().enumerate().take(said)) {
             canvas.text(row, self.sign(series), Role::Series(series));
@@ -237,11 +237,7 @@ impl PlottedColumns {
         };
         let lines: Vec<Line> = self.ys.iter().enumerate().map(line).collect();
         if lines.iter().map(|line| line.points.len()).sum::<usize>() < 2 {
-            canvas.text(
-                area,
-                "fewer than two points: nothing to draw a line through (b for bars)",
-                Role::Dim,
-            );
+            canvas.text(area, "A line needs at least two points. Use bars (b).", Role::Dim);
             return;
         }
         let name = |place: f64| {
@@ -289,18 +285,18 @@ impl PlottedColumns {
     }
 }
 
-/// Whether the sum of a column of this name says something: shares and prices are not added.
+/// Returns whether the sum of a column with this name is meaningful; shares and prices are not summed.
 fn can_be_added(name: &str) -> bool {
     const NEVER: [&str; 6] = ["percent", "share", "rate", "average", "price", "per"];
     !name.to_lowercase().split(|letter: char| !letter.is_alphanumeric()).any(|word| NEVER.contains(&word))
 }
 
-/// Lines alternate with dots: two series are told apart without colour.
+/// Returns whether a series is dotted. Solid and dotted lines alternate to distinguish series without color.
 fn is_dotted(series: usize) -> bool {
     series % 2 == 1
 }
 
-/// A number on the axis of x: days and weeks in full, large ones short.
+/// Formats a number on the x axis: days and weeks in full, large ones short.
 fn axis_number(value: f64) -> String {
     if value.abs() < 10_000.0 { number((value * 10.0).round() / 10.0) } else { compact(value) }
 }
@@ -339,7 +335,7 @@ mod tests {
         let plot = PlottedColumns::of(&rows, proposed("line leads spend").as_ref()).expect("a chart");
         assert_eq!(plot, PlottedColumns { kind: ChartKind::Line, x: Some(1), ys: vec![2] });
         let plot = PlottedColumns::of(&rows, proposed("line nothing spend").as_ref()).expect("a chart");
-        assert_eq!(plot.x, Some(0), "a column that is not there: the likeliest chart");
+        assert_eq!(plot.x, Some(0), "an unknown column leads to the default chart");
         let days =
             result(&["day", "cash"], (0..3).map(|at| vec![Cell::Integer(at), Cell::Real(1.0)]).collect());
         let plot = PlottedColumns::of(&days, None).expect("a chart");

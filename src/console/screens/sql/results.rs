@@ -1,4 +1,4 @@
-//! What came of a statement: rows to walk, copy and export, or why there are none.
+//! Result of a statement: rows to browse, copy and export, or the error.
 
 use std::time::Duration;
 
@@ -11,41 +11,38 @@ use super::{takeout, values};
 use crate::action::Action;
 use crate::effect::Effect;
 use crate::screens::panes::Seat;
-use novamind_record::folder::library::{ChartLine, Head, Library};
 use novamind_database::{Cell, Rows};
+use novamind_record::folder::library::{ChartLine, Head, Library};
 use novamind_tools::Refusal;
 use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Table;
 
-/// What came of the last statement.
+/// Answer to the last statement.
 #[derive(Debug, Default)]
 pub enum Answer {
-    /// Nothing was asked yet.
+    /// No statement has been run.
     #[default]
     None,
-    /// Rows, and how long they took.
     Rows(Rows, Duration),
-    /// Why it was not answered.
     Refused(Refusal),
 }
 
-/// The pane of results.
 #[derive(Default)]
 pub struct Results {
     answer: Answer,
     table: Table,
-    /// How the statement wants its result to be drawn.
+    /// Chart that the statement specifies.
     proposed: Option<ChartLine>,
-    /// The chart, while it is shown instead of the rows.
+    /// The chart, while it replaces the rows.
     plot: Option<PlottedColumns>,
     bytes: usize,
 }
 
-/// What to try first.
+/// Introduction, shown before the first query.
 const LESSON: &str =
-    "ctrl-o opens the library of queries. Or type one of these, or choose a table (shift-tab, then enter):
+    "Open the library of queries with ctrl-o, type one of these, or choose a table (shift-tab, then enter):
 
 SELECT category, round(sum(amount)) AS dollars FROM ledger GROUP BY category ORDER BY dollars
 
@@ -55,16 +52,16 @@ FROM subscriptions WHERE status = 'subscribed' GROUP BY plan
 SELECT channel_id, group_id, sum(leads_generated) AS leads, sum(spend) AS spend
 FROM ad_channel_leads GROUP BY 1, 2 ORDER BY leads DESC
 
-Only reading is possible. Days count from 0; money is in dollars.";
+Statements can only read. Days count from 0; amounts are in dollars.";
 
-/// The place of an error in the statement, in bytes, where the message names it.
+/// Returns the byte offset of an error, if the message contains it.
 pub fn place_of(refusal: &Refusal) -> Option<usize> {
     let (_, place) = refusal.message.rsplit_once("(at character ")?;
     place.strip_suffix(')')?.parse::<usize>().ok()?.checked_sub(1)
 }
 
 impl Results {
-    /// Takes the answer to a statement.
+    /// Stores the answer to a statement.
     pub fn take(&mut self, sql: &str, answer: Result<Rows, Refusal>, took: Duration) {
         let proposed = Head::of(sql).chart;
         match answer {
@@ -86,44 +83,41 @@ impl Results {
         }
     }
 
-    /// The table of rows.
     pub fn table(&self) -> &Table {
         &self.table
     }
 
-    /// The same, to be changed.
     pub fn table_mut(&mut self) -> &mut Table {
         &mut self.table
     }
 
-    /// Whether a chart is shown.
     pub fn is_chart(&self) -> bool {
         self.plot.is_some() && self.rows().is_some()
     }
 
-    /// Whether the statement was refused.
+    /// Returns whether the statement failed.
     pub fn is_refused(&self) -> bool {
         matches!(self.answer, Answer::Refused(_))
     }
 
-    /// About how many bytes it takes: rows as they came, and as they are shown.
+    /// Returns the approximate size in bytes of the rows and their display form.
     pub fn bytes(&self) -> usize {
         self.bytes
     }
 
-    /// The rows and the selected column.
+    /// Returns the rows and the selected column.
     pub fn focused_column(&self) -> Option<(&Rows, usize)> {
         let at = self.table.selected_column();
         self.rows().filter(|rows| at < rows.columns.len()).map(|rows| (rows, at))
     }
 
-    /// The rows that are counted and pivoted.
+    /// Returns the rows that counts and pivots cover.
     pub fn rows_meant(&self) -> RowsMeant {
         let all = |rows| RowsMeant::by(self.table.filter_text(), rows, self.table.shown());
         self.rows().map_or(RowsMeant::All, all)
     }
 
-    /// Those of them that are held.
+    /// Returns the available rows among them.
     pub fn held(&self, meant: &RowsMeant) -> Rows {
         let Some(all) = self.rows() else { return Rows::default() };
         match (meant, self.rows_as_shown()) {
@@ -132,19 +126,19 @@ impl Results {
         }
     }
 
-    /// Whether there are rows to take somewhere.
+    /// Returns whether there are rows to export.
     pub fn has_rows(&self) -> bool {
         self.rows().is_some()
     }
 
-    /// The rows as they are shown: filtered and sorted.
+    /// Returns the rows as shown, filtered and sorted.
     fn rows_as_shown(&self) -> Option<Rows> {
         let all = self.rows()?;
         let rows = self.table.shown().iter().map(|row| all.rows[*row].clone()).collect();
         Some(Rows { columns: all.columns.clone(), rows, ..Rows::default() })
     }
 
-    /// What would be taken out: `12 of 300 rows, as shown`.
+    /// Describes the exported rows: `12 of 300 rows, as filtered`.
     pub fn what_is_taken(&self) -> String {
         let Some(rows) = self.rows() else { return String::new() };
         match (self.table.shown().len(), rows.rows.len()) {
@@ -154,7 +148,7 @@ impl Results {
         }
     }
 
-    /// Takes the rows out as they are shown.
+    /// Exports the rows as shown.
     pub fn take_out(&self, way: Action) -> Vec<Effect> {
         self.rows_as_shown().map_or_else(Vec::new, |rows| takeout::take(way, &rows))
     }
@@ -164,25 +158,25 @@ impl Results {
         match (&self.plot, self.rows()) {
             (Some(_), _) => Vec::new(),
             (None, Some(_)) => {
-                vec![Effect::Complain("no numeric column to chart".to_owned())]
+                vec![Effect::Complain("No numeric column to chart".to_owned())]
             }
             (None, None) if self.is_refused() => {
-                vec![Effect::Complain("no result to chart: the last statement was refused".to_owned())]
+                vec![Effect::Complain("No result to chart. The last statement failed.".to_owned())]
             }
             (None, None) => {
-                vec![Effect::Complain("no result to chart: run a statement first".to_owned())]
+                vec![Effect::Complain("No result to chart. Run a statement first.".to_owned())]
             }
         }
     }
 
-    /// Changes the chart; what concerns the rows goes to them.
+    /// Runs an action in the chart; other actions go to the rows.
     fn act_in_chart(&mut self, action: Action, page: u16) -> Vec<Effect> {
         let (Some(plot), Answer::Rows(rows, _)) = (&mut self.plot, &self.answer) else { return Vec::new() };
         match action {
             Action::ChartX => plot.next_x(rows),
             Action::ChartY => plot.next_y(rows),
             Action::MoreSeries if !plot.more(rows) => {
-                return vec![Effect::Complain("no other numeric column, or no room for it".to_owned())];
+                return vec![Effect::Complain("No other numeric column, or no room for it".to_owned())];
             }
             Action::MoreSeries | Action::Left | Action::Right => {}
             Action::FewerSeries => plot.fewer(),
@@ -209,18 +203,18 @@ impl Results {
         }
     }
 
-    /// The selected row in full.
+    /// Returns all values of the selected row.
     fn row(&self) -> Option<&[Cell]> {
         self.rows()?.rows.get(self.table.selected()?).map(Vec::as_slice)
     }
 
-    /// Name and value of the selected cell.
+    /// Returns the column and value of the selected cell.
     fn cell(&self) -> Option<(&str, &Cell)> {
         let at = self.table.selected_column();
         Some((self.rows()?.columns.get(at)?, self.row()?.get(at)?))
     }
 
-    /// Walks, sorts, filters, copies, draws.
+    /// Moves, sorts, filters, copies or switches to a chart.
     pub fn act(&mut self, action: Action, page: u16) -> Vec<Effect> {
         match action {
             _ if self.is_chart() => self.act_in_chart(action, page),
@@ -230,7 +224,7 @@ impl Results {
     }
 
     fn act_in_rows(&mut self, action: Action, page: u16) -> Vec<Effect> {
-        let nothing = || vec![Effect::Complain("no result to copy from".to_owned())];
+        let nothing = || vec![Effect::Complain("No result to copy from".to_owned())];
         match action {
             Action::WholeCell => {
                 let read = |(name, cell): (&str, &Cell)| Effect::ShowText(name.to_owned(), readable(cell));
@@ -252,7 +246,7 @@ impl Results {
         }
     }
 
-    /// A row was clicked; a second time opens its cell.
+    /// Handles a click on a row; a second click opens its cell.
     pub fn click(&mut self, place: usize, page: u16) -> Vec<Effect> {
         let before = self.table.selected();
         self.table.select_place(place);
@@ -260,7 +254,7 @@ impl Results {
         if again { self.act(Action::WholeCell, page) } else { Vec::new() }
     }
 
-    /// What stands above the answer: what it is, and how its rows are filtered and sorted.
+    /// Returns the title and note: description of the result, its filter and order.
     pub fn head(&self) -> (String, String) {
         match &self.answer {
             Answer::None => ("Result".to_owned(), "no query yet".to_owned()),
@@ -272,7 +266,7 @@ impl Results {
         }
     }
 
-    /// Draws that a statement is being answered.
+    /// Draws the time of a running statement.
     pub fn draw_running(&self, canvas: &mut Canvas<'_>, area: Rect, since: Duration) {
         let seconds = match since.as_secs() {
             0 => String::new(),
@@ -282,12 +276,11 @@ impl Results {
         canvas.text(row, &format!("running {seconds}… esc cancels"), Role::Warning);
     }
 
-    /// Draws the answer.
     pub fn draw(&self, canvas: &mut Canvas<'_>, seat: Seat, library: &Library) {
         match &self.answer {
             Answer::None => draw_nothing(canvas, seat.area, library),
             Answer::Refused(refusal) => {
-                let role = if outcome(refusal.code) == "refused" { Role::Bad } else { Role::Warning };
+                let role = if outcome(refusal.code) == "failed" { Role::Bad } else { Role::Warning };
                 text(canvas, seat.area, refusal.code, &refusal.message, role);
             }
             Answer::Rows(rows, _) => self.draw_rows(canvas, seat, rows),
@@ -298,8 +291,8 @@ impl Results {
         let area = seat.area;
         let remark = match (&rows.warning, &rows.hint) {
             (Some(warning), _) => Some(warning.clone()),
-            (None, Some(hint)) => Some(format!("no rows: {hint}")),
-            (None, None) if rows.rows.is_empty() => Some("no rows".to_owned()),
+            (None, Some(hint)) => Some(format!("No rows: {hint}")),
+            (None, None) if rows.rows.is_empty() => Some("No rows".to_owned()),
             (None, None) => None,
         };
         let role = if rows.warning.is_some() || rows.hint.is_some() { Role::Warning } else { Role::Dim };
@@ -323,7 +316,7 @@ impl Results {
         }
     }
 
-    /// What is offered first of what can be done with what is shown.
+    /// Returns the actions for the footer.
     pub fn hints(&self) -> Vec<Action> {
         match (self.is_chart(), self.rows()) {
             (true, _) => vec![Action::ChartY, Action::ChartKind, Action::CloseChart, Action::EditQuery],
@@ -332,7 +325,7 @@ impl Results {
         }
     }
 
-    /// What can be done with what is shown.
+    /// Returns the actions for the current answer.
     pub fn keys(&self) -> &'static [Action] {
         match (self.is_chart(), &self.answer) {
             (true, _) => &[
@@ -360,7 +353,7 @@ impl Results {
     }
 }
 
-/// Before anything was asked: what to try, and what the library holds as far as there is room.
+/// Draws the introduction, and the library if it fits.
 fn draw_nothing(canvas: &mut Canvas<'_>, area: Rect, library: &Library) {
     let used = (text(canvas, area, "", LESSON, Role::Text) + 1).min(area.height);
     let below = Rect { y: area.y + used, height: area.height - used, ..area };
@@ -372,16 +365,15 @@ fn draw_nothing(canvas: &mut Canvas<'_>, area: Rect, library: &Library) {
     }
 }
 
-/// What became of a statement that was not answered.
+/// Returns the outcome of a statement without rows.
 fn outcome(code: &str) -> &'static str {
     match code {
         "sql_timeout" => "stopped at a limit",
         "sql_cancelled" => "cancelled",
-        _ => "refused",
+        _ => "failed",
     }
 }
 
-/// `Result · 3 rows · 12 ms`.
 fn title(rows: &Rows, took: Duration) -> String {
     let of = if rows.truncated { "first " } else { "" };
     let milliseconds = took.as_secs_f64() * 1e3;
@@ -393,14 +385,14 @@ fn title(rows: &Rows, took: Duration) -> String {
     format!("Result · {of}{} · {time}", takeout::count(rows.rows.len()))
 }
 
-/// Bytes of rows, and of the shown cells made of them: the first letters of a text.
+/// Returns the bytes of rows and of their cells, which contain only the start of long texts.
 fn bytes_of(rows: &Rows) -> usize {
     const OF_A_CELL: usize = 128;
     let text = |cell: &Cell| if let Cell::Text(text) = cell { text.len() + text.len().min(400) } else { 0 };
     rows.rows.iter().flatten().map(|cell| OF_A_CELL + text(cell)).sum()
 }
 
-/// A value to read in a window of its own; JSON is laid out.
+/// Returns a value for a separate window, with formatted JSON.
 fn readable(cell: &Cell) -> String {
     match cell {
         Cell::Null => "NULL".to_owned(),
@@ -413,7 +405,7 @@ fn readable(cell: &Cell) -> String {
     }
 }
 
-/// Writes text in wrapped lines below a head, and returns how many rows it took.
+/// Draws wrapped text below a heading; returns the number of rows.
 fn text(canvas: &mut Canvas<'_>, area: Rect, head: &str, words: &str, role: Role) -> u16 {
     let mut rows = rows_of(area);
     let mut used = 0;
@@ -430,7 +422,7 @@ fn text(canvas: &mut Canvas<'_>, area: Rect, head: &str, words: &str, role: Role
     used
 }
 
-/// The statements of the lesson.
+/// Returns the example statements of the introduction.
 #[cfg(test)]
 pub fn examples() -> Vec<String> {
     let statements = LESSON.split("\n\n").filter(|part| part.starts_with("SELECT"));

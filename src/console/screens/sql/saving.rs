@@ -1,39 +1,36 @@
-//! The name under which a statement is saved into a person's own queries.
+//! Dialog that saves a statement under a name.
 
 use ratatui::layout::Rect;
 
-use crate::effect::Effect;
-use crate::context::Look;
 use crate::action::Action;
-use novamind_record::folder::library::{Library, Head, file_name};
+use crate::context::Look;
+use crate::effect::Effect;
+use novamind_record::folder::library::{Head, Library, file_name};
 use novamind_tui::canvas::{Canvas, centered};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;
 
-/// A statement that is being named.
 pub struct Saving {
-    /// The name as it is typed.
     pub field: Field,
     sql: String,
-    /// The name that the person was warned about: it is taken.
+    /// The existing name that the user was warned about.
     warned: Option<String>,
 }
 
-/// What stands at a name.
 enum NameTaken {
-    /// It cannot be a name.
+    /// Not a valid name.
     Wrong,
-    /// Nothing.
+    /// Unused.
     Free(String),
-    /// A query of the person.
+    /// A query of the user.
     Own(String),
-    /// A query that came with the program.
+    /// A bundled query.
     Shipped(String),
 }
 
 impl Saving {
-    /// Asks for a name; the title of the statement is proposed.
+    /// Opens the dialog with the title of the statement as default name.
     pub fn of(sql: String) -> Saving {
         let title = Head::of(&sql).title.unwrap_or_default();
         Saving { field: Field::to_replace(title), sql, warned: None }
@@ -48,7 +45,7 @@ impl Saving {
         }
     }
 
-    /// What taking the name asks for; nothing as long as the person has to think again.
+    /// Saves the statement; returns `None` if the user must confirm or change the name.
     pub fn commit(&mut self, library: &Library) -> Option<Effect> {
         let name = match self.place(library) {
             NameTaken::Wrong => return None,
@@ -66,29 +63,35 @@ impl Saving {
         let again = |name: &str| self.warned.as_deref() == Some(name);
         match self.place(library) {
             NameTaken::Wrong if self.field.is_empty() => {
-                ("Type a name; the statement at the cursor is saved under it.".to_owned(), Role::Dim)
+                ("Type a name for the statement at the cursor.".to_owned(), Role::Dim)
             }
             NameTaken::Wrong => {
-                ("A name is made of letters, digits, blanks, - and _; at most 60.".to_owned(), Role::Warning)
+                ("Use letters, digits, spaces, - and _ (at most 60 characters).".to_owned(), Role::Warning)
             }
-            NameTaken::Free(name) => (format!("Becomes queries/{name}.sql in your configuration."), Role::Dim),
+            NameTaken::Free(name) => {
+                (format!("Saved as queries/{name}.sql in your configuration."), Role::Dim)
+            }
             NameTaken::Own(name) if again(&name) => {
-                (format!("! {name} already exists: enter again replaces it."), Role::Warning)
+                (format!("! {name} already exists. Press enter again to replace it."), Role::Warning)
             }
-            NameTaken::Own(name) => (format!("{name} already exists; enter asks again."), Role::Warning),
+            NameTaken::Own(name) => {
+                (format!("{name} already exists. Enter asks for confirmation."), Role::Warning)
+            }
             NameTaken::Shipped(name) if again(&name) => {
-                (format!("! {name} is a built-in query: enter again overrides it."), Role::Warning)
+                (format!("! {name} is a built-in query. Press enter again to override it."), Role::Warning)
             }
-            NameTaken::Shipped(name) => (format!("{name} is a built-in query; enter asks again."), Role::Warning),
+            NameTaken::Shipped(name) => {
+                (format!("{name} is a built-in query. Enter asks for confirmation."), Role::Warning)
+            }
         }
     }
 
-    /// Draws the question over the screen.
+    /// Draws the dialog over the screen.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, library: &Library, look: &Look<'_>) {
         let own = centered(area, 72, 6);
         canvas.clear(own, Role::Text);
         canvas.clicks.clear();
-        let inside = canvas.pane(own, "Save the query as", "", true);
+        let inside = canvas.pane(own, "Save query as", "", true);
         let line = Rect { height: 1.min(inside.height), ..inside };
         self.field.draw(canvas, Rect { x: line.x + 1, width: line.width.saturating_sub(2), ..line });
         let (text, role) = self.remark(library);
@@ -114,7 +117,7 @@ mod tests {
         assert!(saving.remark(&library).0.contains("enter again"));
         assert!(matches!(saving.commit(&library), Some(Effect::SaveQuery { name, .. }) if name == "economy"));
         saving.field = Field::of("a/b");
-        assert!(saving.commit(&library).is_none() && saving.remark(&library).0.starts_with("A name"));
+        assert!(saving.commit(&library).is_none() && saving.remark(&library).0.starts_with("Use letters"));
         saving.field = Field::of("My own");
         let saved = saving.commit(&library);
         assert!(

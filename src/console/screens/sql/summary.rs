@@ -1,41 +1,36 @@
-//! Statements over a statement: how often each value of a column stands in its result, and a pivot of it. The database
-//! answers them, so they cover every row, and not only those that are held; they hold the filter of the screen; and they are recorded as any
-//! query is.
+//! Statements derived from a statement: the frequency of each value of a column, and a pivot. They run in the
+//! database, so they cover all rows of the result and not only the loaded ones. They include the screen's
+//! filter and are recorded like any query.
 
 use super::meant::RowsMeant;
 use super::picker::in_a_line;
 use super::values::whole;
-use novamind_record::folder::library::body;
 use novamind_database::{Cell, Rows};
+use novamind_record::folder::library::body;
 use novamind_tui::sql::{KEYWORDS, tokens};
 
-/// Columns that a pivot has for values, at most; all others are in one more.
+/// Maximum number of value columns of a pivot; the other values share one column.
 pub const MOST_ACROSS: usize = 12;
 
-/// Why a statement cannot be summed up.
-pub const NOT_A_TABLE: &str = "a query plan cannot be counted or pivoted; run the statement without EXPLAIN first";
+/// Error for statements that cannot be derived from.
+pub const NOT_A_TABLE: &str =
+    "A query plan cannot be counted or pivoted. Run the statement without EXPLAIN first.";
 
-/// What is worked out of the rows that meet in a cell of a pivot.
+/// Aggregation of the rows in a cell of a pivot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Aggregate {
-    /// How many rows.
     Count,
-    /// Sum of a column.
     Sum,
-    /// Its mean.
     Mean,
-    /// Its least value.
     Min,
-    /// Its greatest value.
     Max,
 }
 
 impl Aggregate {
-    /// Those of a column.
+    /// Aggregations of a column.
     pub const OF_COLUMNS: [Aggregate; 5] =
         [Aggregate::Sum, Aggregate::Mean, Aggregate::Min, Aggregate::Max, Aggregate::Count];
 
-    /// In a word.
     pub fn word(self) -> &'static str {
         match self {
             Aggregate::Count => "count",
@@ -46,33 +41,31 @@ impl Aggregate {
         }
     }
 
-    /// As SQL, of a column; of rows without one.
+    /// Returns the SQL expression for a column, or for rows.
     fn sql(self, column: Option<&str>) -> String {
         let function = if self == Aggregate::Mean { "avg" } else { self.word() };
         format!("{function}({})", column.unwrap_or("*"))
     }
 }
 
-/// What a pivot is made of; columns by their places.
+/// Definition of a pivot; columns are indexes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PivotShape {
-    /// One row for each value of it.
+    /// Column with a row for each value.
     pub rows: usize,
-    /// One column for each value of it.
+    /// Column with a column for each value.
     pub across: Option<usize>,
-    /// What is aggregated; without one rows are counted.
+    /// Column to aggregate; `None` counts rows.
     pub values: Option<usize>,
-    /// How.
     pub aggregate: Aggregate,
 }
 
-/// A statement as a table that another one reads.
+/// A statement as the source of another one.
 struct Source {
-    /// What stands before the other one.
+    /// WITH clause before the outer statement.
     with: String,
-    /// What it reads from, with the clause for the rows that are meant.
+    /// FROM clause, with the clause for the covered rows.
     from: String,
-    /// Its columns as SQL writes them.
     names: Vec<String>,
 }
 
@@ -93,7 +86,7 @@ impl Source {
         }
         let names: Vec<String> = given.iter().map(|name| identifier(name)).collect();
         let clause = meant.clause(&names);
-        // A name that is not found would be a text in double quotes: what is no plain word gets its name here.
+        // SQLite reads an unknown quoted name as text, so columns without a plain name are renamed.
         Some(match given == columns && names == given {
             true => Source { with: String::new(), from: format!("(\n{body}\n){clause}"), names },
             false => Source {
@@ -105,7 +98,7 @@ impl Source {
     }
 }
 
-/// A name as SQL writes it.
+/// Returns an identifier, quoted if necessary.
 fn identifier(name: &str) -> String {
     let is_word = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
     let plain = name.chars().all(is_word) && !name.starts_with(|first: char| first.is_ascii_digit());
@@ -115,7 +108,7 @@ fn identifier(name: &str) -> String {
     }
 }
 
-/// A value as SQL writes it; none for what SQL cannot compare with.
+/// Returns a literal; `None` for values that SQL cannot compare.
 fn literal(cell: &Cell) -> Option<String> {
     match cell {
         Cell::Real(number) if !number.is_finite() => None,
@@ -124,7 +117,7 @@ fn literal(cell: &Cell) -> Option<String> {
     }
 }
 
-/// A statement that tells how often each value of a column stands in the result of another one, the most frequent first.
+/// Returns a statement that counts each value of a column in the result of another one, most frequent first.
 pub fn count(sql: &str, columns: &[String], at: usize, meant: &RowsMeant) -> Option<String> {
     let source = Source::of(sql, columns, meant)?;
     let name = source.names.get(at)?;
@@ -138,7 +131,7 @@ pub fn count(sql: &str, columns: &[String], at: usize, meant: &RowsMeant) -> Opt
     ))
 }
 
-/// A statement that pivots the result of another one, of which some rows are held: of those that are meant.
+/// Returns a statement that pivots the covered rows of another one; `held` are its loaded rows.
 pub fn pivot(sql: &str, held: &Rows, shape: PivotShape, meant: &RowsMeant) -> Option<String> {
     let source = Source::of(sql, &held.columns, meant)?;
     let PivotShape { rows, across, values, aggregate } = shape;
@@ -165,7 +158,8 @@ pub fn pivot(sql: &str, held: &Rows, shape: PivotShape, meant: &RowsMeant) -> Op
         }
         cells.push(format!("{aggregated} AS \"all\""));
     } else {
-        let alias = values.map_or("count".to_owned(), |at| format!("{}_{}", aggregate.word(), held.columns[at]));
+        let alias =
+            values.map_or("count".to_owned(), |at| format!("{}_{}", aggregate.word(), held.columns[at]));
         cells.push(format!("{aggregated} AS {}", identifier(&alias)));
     }
     Some(format!(
@@ -178,7 +172,7 @@ pub fn pivot(sql: &str, held: &Rows, shape: PivotShape, meant: &RowsMeant) -> Op
     ))
 }
 
-/// `sum of amount by category and day`.
+/// Returns a title such as `sum of amount by category and day`.
 fn title(held: &Rows, shape: PivotShape) -> String {
     let name = |at: usize| in_a_line(&held.columns[at]);
     let what = match shape.values {
@@ -189,16 +183,16 @@ fn title(held: &Rows, shape: PivotShape) -> String {
     format!("{what} by {}{across}", name(shape.rows))
 }
 
-/// The values that a column of a pivot stands for.
+/// Values of a column of a pivot.
 pub struct Distinct {
     /// In ascending order, NULL last.
     pub values: Vec<Cell>,
-    /// No other row can have another value.
+    /// Whether the column has no other values.
     pub complete: bool,
 }
 
 impl Distinct {
-    /// The most frequent values of a column of the rows that are held.
+    /// Returns the most frequent values of a column among the loaded rows.
     pub fn of(held: &Rows, at: usize) -> Distinct {
         let mut counted: Vec<(Cell, usize)> = Vec::new();
         let mut cells: Vec<&Cell> = held.rows.iter().filter_map(|row| row.get(at)).collect();
@@ -211,18 +205,18 @@ impl Distinct {
         }
         let all = counted.len();
         counted.retain(|(cell, _)| literal(cell).is_some());
-        // A stable sort: of equally frequent values the lesser ones stay.
+        // The sort is stable: of equally frequent values the smaller ones come first.
         counted.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
         counted.truncate(MOST_ACROSS);
         counted.sort_by(|(one, _), (other, _)| order(one, other));
-        // The digits of a number with decimals need not be read back to the same number.
+        // The printed form of a real number may not parse to the same number.
         let exact = counted.iter().all(|(cell, _)| !matches!(cell, Cell::Real(_)));
         let complete = exact && !held.truncated && counted.len() == all;
         Distinct { values: counted.into_iter().map(|(cell, _)| cell).collect(), complete }
     }
 }
 
-/// Numbers, then texts, then NULL.
+/// Orders numbers before texts, and NULL last.
 fn order(one: &Cell, other: &Cell) -> std::cmp::Ordering {
     let rank = |cell: &Cell| match cell {
         Cell::Integer(_) | Cell::Real(_) => 0,
@@ -251,7 +245,7 @@ mod tests {
         session.query(sql).unwrap_or_else(|refusal| panic!("{refusal}\n{sql}"))
     }
 
-    /// A table that the tests sum up: duplicate and odd names, NULL, quotes.
+    /// A statement with duplicate and unusual names, NULL and quotes.
     const SQL: &str = "-- title: Odd\nWITH t AS (VALUES ('it''s', 1, 2.5), ('it''s', 2, NULL), (NULL, 1, 4.0), ('b', 1, 1.5))
         SELECT column1 AS \"group by\", column2 AS n, column3 AS n, count(*) OVER () FROM t -- the end";
 
@@ -259,7 +253,8 @@ mod tests {
     fn values_are_counted_with_their_shares() {
         let mut session = session();
         let rows = asked(&mut session, SQL);
-        let counted = asked(&mut session, &count(SQL, &rows.columns, 0, &RowsMeant::All).expect("a statement"));
+        let counted =
+            asked(&mut session, &count(SQL, &rows.columns, 0, &RowsMeant::All).expect("a statement"));
         assert_eq!(counted.columns, ["group by", "count", "percent"]);
         let text = |text: &str| Cell::Text(text.to_owned());
         let row = |cell, count, percent| vec![cell, Cell::Integer(count), Cell::Real(percent)];
@@ -267,8 +262,9 @@ mod tests {
             counted.rows,
             [row(text("it's"), 2, 50.0), row(Cell::Null, 1, 25.0), row(text("b"), 1, 25.0)]
         );
-        let second = asked(&mut session, &count(SQL, &rows.columns, 2, &RowsMeant::All).expect("a statement"));
-        assert_eq!(second.rows.len(), 4, "the second column of a name is meant: {second:?}");
+        let second =
+            asked(&mut session, &count(SQL, &rows.columns, 2, &RowsMeant::All).expect("a statement"));
+        assert_eq!(second.rows.len(), 4, "the second column of the same name is counted: {second:?}");
     }
 
     #[test]
@@ -277,7 +273,8 @@ mod tests {
         let sql = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < 9000) SELECT x % 2 AS odd FROM n;";
         let held = asked(&mut session, sql);
         assert!(held.truncated);
-        let counted = asked(&mut session, &count(sql, &held.columns, 0, &RowsMeant::All).expect("a statement"));
+        let counted =
+            asked(&mut session, &count(sql, &held.columns, 0, &RowsMeant::All).expect("a statement"));
         assert_eq!(counted.rows[0][1], Cell::Integer(4500));
         let shape = PivotShape { rows: 0, across: Some(0), values: None, aggregate: Aggregate::Count };
         let pivoted = asked(&mut session, &pivot(sql, &held, shape, &RowsMeant::All).expect("a statement"));
@@ -296,7 +293,10 @@ mod tests {
         assert_eq!(rows.rows[0], [Cell::Integer(1), real(1.5), real(2.5), real(4.0), real(8.0)]);
         assert_eq!(rows.rows[1], [Cell::Integer(2), Cell::Null, Cell::Null, Cell::Null, Cell::Null]);
         for (aggregate, all) in [(Aggregate::Mean, 8.0 / 3.0), (Aggregate::Min, 1.5), (Aggregate::Max, 4.0)] {
-            let rows = asked(&mut session, &pivot(SQL, &held, PivotShape { aggregate, ..shape }, &RowsMeant::All).expect("one"));
+            let rows = asked(
+                &mut session,
+                &pivot(SQL, &held, PivotShape { aggregate, ..shape }, &RowsMeant::All).expect("one"),
+            );
             assert_eq!(rows.rows[0][4], real(all), "{aggregate:?}");
         }
         let flat = PivotShape { across: None, values: None, aggregate: Aggregate::Count, ..shape };

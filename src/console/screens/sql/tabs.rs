@@ -1,33 +1,31 @@
-//! The last results as tabs: each statement has its own, a statement that is run again renews its tab, and a pinned tab
-//! stays as it is.
+//! Tabs of recent results. Each statement has its own tab, running it again updates the tab, and pinned tabs
+//! stay.
 
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
 use super::picker::in_a_line;
 use super::results::Results;
-use std::time::Duration;
-use novamind_database::{table, Rows};
+use novamind_database::{Rows, table};
 use novamind_record::folder::library::{Head, body};
 use novamind_tools::Refusal;
 use novamind_tui::canvas::{Canvas, Click};
 use novamind_tui::sql::tokens;
 use novamind_tui::theme::Role;
+use std::time::Duration;
 
-/// Tabs at most.
 const MOST: usize = 9;
-/// Tabs that can be pinned: one is left for what is asked next.
+/// Maximum number of pinned tabs; one is left for the next statement.
 const MOST_PINNED: usize = MOST - 1;
-/// Bytes that all tabs may hold together; beyond them the oldest ones go.
+/// Total bytes of all tabs; beyond that the oldest are closed.
 const MOST_BYTES: usize = 128 << 20;
-/// Letters of a title.
+/// Maximum characters of a title.
 const TITLE: usize = 18;
-/// Clicks on tabs stand after all rows.
+/// Indexes of clicks on tabs follow those of all rows.
 const FIRST_CLICK: usize = usize::MAX - MOST;
-/// Below this height the border alone tells which tab it is.
+/// Below this height only the border identifies the tab.
 const ROOM: u16 = 6;
 
-/// What came of one statement.
 struct Tab {
     sql: String,
     title: String,
@@ -35,22 +33,20 @@ struct Tab {
     results: Results,
 }
 
-/// The tabs, the newest last.
+/// The tabs, newest last.
 #[derive(Default)]
 pub struct Tabs {
     tabs: Vec<Tab>,
     at: usize,
-    /// What is shown before anything was asked.
+    /// Shown before the first statement.
     nothing: Results,
 }
 
 impl Tabs {
-    /// The result that is shown.
     pub fn shown(&self) -> &Results {
         self.tabs.get(self.at).map_or(&self.nothing, |tab| &tab.results)
     }
 
-    /// The same, to be changed.
     pub fn shown_mut(&mut self) -> &mut Results {
         match self.tabs.get_mut(self.at) {
             Some(tab) => &mut tab.results,
@@ -58,12 +54,12 @@ impl Tabs {
         }
     }
 
-    /// The statement of the result that is shown.
+    /// Returns the statement of the shown result.
     pub fn statement(&self) -> Option<&str> {
         self.tabs.get(self.at).map(|tab| tab.sql.as_str())
     }
 
-    /// Takes the answer to a statement and shows it. A refusal keeps the rows that the statement had before.
+    /// Stores the answer to a statement and shows it. After an error the statement keeps its previous rows.
     pub fn take(&mut self, sql: &str, answer: Result<Rows, Refusal>, took: Duration) {
         let renewed = |tab: &Tab| !tab.pinned && answer.is_ok() && tab.sql == sql;
         let known = self.tabs.iter().position(renewed);
@@ -77,7 +73,7 @@ impl Tabs {
         (tab.sql, tab.title) = (sql.to_owned(), title(sql));
         tab.results.take(sql, answer, took);
         self.at = at;
-        // What was refused is of no use any more once something else is shown.
+        // Failed statements are dropped once another result is shown.
         if let Some(other) = refused.filter(|other| *other != at) {
             self.remove(other);
         }
@@ -103,13 +99,13 @@ impl Tabs {
         }
     }
 
-    /// Shows the tab before or after, round.
+    /// Shows the next or previous tab, cyclically.
     pub fn walk(&mut self, on: bool) {
         let count = self.tabs.len().max(1);
         self.at = (self.at + if on { 1 } else { count - 1 }) % count;
     }
 
-    /// Closes the tab that is shown; whether there was one.
+    /// Closes the shown tab; returns whether there was one.
     pub fn close(&mut self) -> bool {
         let is_there = self.at < self.tabs.len();
         if is_there {
@@ -118,32 +114,33 @@ impl Tabs {
         is_there
     }
 
-    /// Pins the tab that is shown, or lets it go; what it is then.
+    /// Pins or unpins the shown tab; returns whether it is pinned.
     ///
     /// # Errors
-    /// Why it cannot be pinned.
+    /// The reason why it cannot be pinned.
     pub fn pin(&mut self) -> Result<bool, String> {
         let pinned = self.tabs.iter().filter(|tab| tab.pinned);
-        let (count, bytes) = pinned.fold((0, 0), |(count, bytes), tab| (count + 1, bytes + tab.results.bytes()));
+        let (count, bytes) =
+            pinned.fold((0, 0), |(count, bytes), tab| (count + 1, bytes + tab.results.bytes()));
         let Some(tab) = self.tabs.get_mut(self.at).filter(|tab| !tab.results.is_refused()) else {
-            return Err("no result to pin: run a statement first".to_owned());
+            return Err("No result to pin. Run a statement first.".to_owned());
         };
         if !tab.pinned && count == MOST_PINNED {
-            return Err(format!("{MOST_PINNED} results are pinned; unpin or close one first"));
+            return Err(format!("{MOST_PINNED} results are pinned. Unpin or close one first."));
         }
         if !tab.pinned && bytes + tab.results.bytes() > MOST_BYTES {
-            return Err("the pinned results hold too much text; unpin or close one first".to_owned());
+            return Err("The pinned results are too large. Unpin or close one first.".to_owned());
         }
         tab.pinned = !tab.pinned;
         Ok(tab.pinned)
     }
 
-    /// ` 2/3`, where there are several.
+    /// Returns ` 2/3` if there are several tabs.
     pub fn number(&self) -> String {
         if self.tabs.len() > 1 { format!(" {}/{}", self.at + 1, self.tabs.len()) } else { String::new() }
     }
 
-    /// Shows the tab that was clicked; false if the click was on a row.
+    /// Shows the clicked tab; returns false for clicks on rows.
     pub fn click(&mut self, place: usize) -> bool {
         let tab = place.checked_sub(FIRST_CLICK).filter(|at| *at < self.tabs.len());
         if let Some(at) = tab {
@@ -152,7 +149,7 @@ impl Tabs {
         tab.is_some()
     }
 
-    /// Draws the titles where there is room for them; returns what is left for the result.
+    /// Draws the titles if they fit; returns the area for the result.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize) -> Rect {
         if self.tabs.len() < 2 || area.height < ROOM {
             return area;
@@ -162,7 +159,7 @@ impl Tabs {
         };
         let labels: Vec<String> = self.tabs.iter().enumerate().map(label).collect();
         let width = |from: usize| labels[from..=self.at].iter().map(|label| label.width() + 1).sum::<usize>();
-        // The shown one is always seen.
+        // Keep the shown tab visible.
         let first = (0..self.at).find(|from| width(*from) <= area.width as usize).unwrap_or(self.at);
         let mut x = area.x;
         for (at, label) in labels.iter().enumerate().skip(first) {
@@ -179,7 +176,7 @@ impl Tabs {
     }
 }
 
-/// What a tab is called: the title at the head of its statement, the first table it names, or its first words.
+/// Returns the title of a tab: the title of its statement, its first table, or its first words.
 fn title(sql: &str) -> String {
     let short = |text: String| match text.chars().count() {
         long if long > TITLE => text.chars().take(TITLE - 1).chain(['…']).collect(),
@@ -220,9 +217,13 @@ mod tests {
         assert_eq!(titles(&tabs)[..2], ["SELECT 1", "SELECT 5"]);
         assert_eq!((tabs.tabs.len(), tabs.number().as_str()), (9, " 9/9"));
         take(&mut tabs, 6);
-        assert_eq!((tabs.tabs.len(), tabs.statement()), (9, Some("SELECT 6")), "run again, it is renewed");
+        assert_eq!(
+            (tabs.tabs.len(), tabs.statement()),
+            (9, Some("SELECT 6")),
+            "running it again updates its tab"
+        );
         take(&mut tabs, 1);
-        assert_eq!((titles(&tabs)[0], tabs.at), ("SELECT 1", 8), "a pinned one stays as it is");
+        assert_eq!((titles(&tabs)[0], tabs.at), ("SELECT 1", 8), "a pinned tab does not change");
         assert_eq!(tabs.tabs.iter().filter(|tab| tab.sql == "SELECT 1").count(), 2);
         for _ in 0..8 {
             tabs.walk(true);
@@ -244,7 +245,11 @@ mod tests {
         tabs.take("SELECT x", Err(Refusal::new("sql_error", "no")), Duration::ZERO);
         assert_eq!(tabs.tabs.len(), 2);
         take(&mut tabs, 1);
-        assert_eq!((tabs.tabs.len(), tabs.at), (1, 0), "renewed, and the refusal is gone");
+        assert_eq!(
+            (tabs.tabs.len(), tabs.at),
+            (1, 0),
+            "the tab is updated and the failed statement is dropped"
+        );
     }
 
     #[test]
@@ -266,7 +271,8 @@ mod tests {
         let mut tabs = Tabs::default();
         let text = Cell::Text("x".repeat(MOST_BYTES / 4));
         for number in 0..4 {
-            let large = Rows { columns: vec!["n".to_owned()], rows: vec![vec![text.clone()]], ..Rows::default() };
+            let large =
+                Rows { columns: vec!["n".to_owned()], rows: vec![vec![text.clone()]], ..Rows::default() };
             tabs.take(&format!("SELECT {number}"), Ok(large), Duration::ZERO);
         }
         assert!(tabs.bytes() <= MOST_BYTES && tabs.tabs.len() == 3, "{}", tabs.tabs.len());

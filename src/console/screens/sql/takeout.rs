@@ -1,31 +1,30 @@
-//! Taking a result out: as a file, or into the clipboard.
+//! Export of a result to a file or the clipboard.
 
 use ratatui::layout::Rect;
 
 use super::values;
 use crate::action::Action;
-use crate::effect::Effect;
 use crate::context::Look;
+use crate::effect::Effect;
 use novamind_base::notation::grouped;
 use novamind_database::Rows;
 use novamind_tui::canvas::{Canvas, Click, centered, rows_of};
 use novamind_tui::theme::Role;
 
-/// Longest text for the clipboard, in bytes: terminals drop longer ones without a word.
+/// Maximum bytes for the clipboard; terminals silently drop longer texts.
 const CLIPBOARD: usize = 64 << 10;
 
-/// Ways to take a result out, in the order of the list.
+/// Export formats in list order.
 const WAYS: [Action; 5] =
     [Action::ExportCsv, Action::ExportJson, Action::ExportMarkdown, Action::CopyTabs, Action::CopyMarkdown];
 
-/// The list of ways.
 #[derive(Default)]
 pub struct TakeOut {
     selected: usize,
 }
 
 impl TakeOut {
-    /// The way that an action stands for, if it is one; walks the list.
+    /// Returns the format that an action stands for, or moves the selection.
     pub fn act(&mut self, action: Action) -> Option<Action> {
         match action {
             Action::Up => self.selected = self.selected.saturating_sub(1),
@@ -36,13 +35,12 @@ impl TakeOut {
         None
     }
 
-    /// A row was clicked.
     pub fn click(&mut self, row: usize) -> Action {
         self.selected = row.min(WAYS.len() - 1);
         WAYS[self.selected]
     }
 
-    /// Draws the list over the screen. `rows` says what will be taken.
+    /// Draws the list over the screen. `rows` describes the exported rows.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize, rows: &str, look: &Look<'_>) {
         let own = centered(area, 62, WAYS.len() as u16 + 2);
         canvas.clear(own, Role::Text);
@@ -64,7 +62,7 @@ impl TakeOut {
     }
 }
 
-/// What taking rows out in a way asks for.
+/// Exports rows in a format.
 pub fn take(way: Action, rows: &Rows) -> Vec<Effect> {
     match way {
         Action::ExportCsv => match values::csv(rows) {
@@ -84,16 +82,16 @@ fn copy(text: String, rows: &Rows, how: &str) -> Vec<Effect> {
     let kilobytes = |bytes: usize| grouped(bytes as f64 / 1024.0, 1);
     if text.len() > CLIPBOARD {
         return vec![Effect::Complain(format!(
-            "{} KB is too much for a terminal's clipboard ({} KB): write a file, or filter first",
+            "{} KB exceed the limit of the terminal's clipboard ({} KB). Write a file or filter first.",
             kilobytes(text.len()),
             CLIPBOARD >> 10
         ))];
     }
-    let said = format!("copied {} {how}, {} KB", count(rows.rows.len()), kilobytes(text.len()));
+    let said = format!("Copied {} {how}, {} KB", count(rows.rows.len()), kilobytes(text.len()));
     vec![Effect::Copy(text), Effect::Say(said)]
 }
 
-/// `1 row`, `3,000 rows`.
+/// Returns `1 row`, `3,000 rows`.
 pub fn count(rows: usize) -> String {
     format!("{} {}", grouped(rows as f64, 0), if rows == 1 { "row" } else { "rows" })
 }
@@ -112,7 +110,7 @@ mod tests {
     fn what_is_too_long_for_the_clipboard_is_refused_with_its_size() {
         let small = take(Action::CopyTabs, &result(3, 2));
         assert!(matches!(&small[..], [Effect::Copy(text), Effect::Say(said)]
-            if text == "a\nxxx\nxxx\n" && said == "copied 2 rows with tabs, 0.0 KB"));
+            if text == "a\nxxx\nxxx\n" && said == "Copied 2 rows with tabs, 0.0 KB"));
         let large = take(Action::CopyMarkdown, &result(1000, 90));
         assert!(matches!(&large[..], [Effect::Complain(text)] if text.starts_with("88.")), "{large:?}");
     }

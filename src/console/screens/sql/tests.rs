@@ -1,4 +1,4 @@
-//! The whole screen: typing, answers, pictures.
+//! Tests of the whole screen: typing, answers, drawing.
 
 use std::time::Duration;
 
@@ -6,12 +6,12 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::*;
 use crate::action::Scope;
-use novamind_worker::company::Company;
 use crate::keys::Keys;
 use crate::screens::Screen;
 use crate::test_kit::{asked, company, picture, session, sweep};
 use novamind_database::{Cell, Rows};
 use novamind_tools::Refusal;
+use novamind_worker::company::Company;
 
 fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
     let keys = Keys::shipped();
@@ -38,7 +38,7 @@ fn hear(screen: &mut Sql, company: &Company, answer: Result<Rows, Refusal>) {
     with_look(company, |look| screen.take_answers(look));
 }
 
-/// The statement that is asked, and nothing else.
+/// Returns the SQL of the only effect.
 fn sql(effects: &[Effect]) -> &str {
     &asked::<Query>(effects).sql
 }
@@ -124,8 +124,8 @@ fn results_are_copied_and_exported_in_full() {
     assert!(holds(&picture(&screen, &company, 80, 21), "1 of 3 rows, as filtered"));
     let copied = act(&mut screen, &company, Action::CopyMarkdown);
     assert!(matches!(&copied[..], [Effect::Copy(text), Effect::Say(said)]
-        if text.ends_with("| network | 28114 | 12.0 |\n") && said.starts_with("copied 1 row as Markdown")));
-    assert_eq!(screen.scopes()[0], Scope::Result, "the list is gone");
+        if text.ends_with("| network | 28114 | 12.0 |\n") && said.starts_with("Copied 1 row as Markdown")));
+    assert_eq!(screen.scopes()[0], Scope::Result, "the list is closed");
 }
 
 #[test]
@@ -179,7 +179,7 @@ fn earlier_statements_are_found_by_typing_and_esc_loses_nothing() {
     assert_eq!((screen.editor.text().as_str(), screen.focus), ("SELECT 'of yesterday'", SqlPane::Editor));
     act(&mut screen, &company, Action::History);
     let lines = picture(&screen, &company, 80, 21);
-    assert!(holds(&lines, "draft SELECT 1 + half"), "what was replaced is not lost: {lines:#?}");
+    assert!(holds(&lines, "draft SELECT 1 + half"), "replaced text is kept: {lines:#?}");
 }
 
 #[test]
@@ -231,7 +231,7 @@ fn a_result_is_drawn_as_bars_with_words_and_zero() {
     assert!(holds(&lines, "█ subs by acquisition_source"), "{lines:#?}");
     assert!(holds(&lines, "subs: min 9 (search_ads) · max 28,114 (network) · total 41,959"), "{lines:#?}");
     assert!(holds(&lines, "network           28,114 │████████"), "{lines:#?}");
-    assert!(holds(&lines, "search_ads             9 │█ "), "a small bar is seen: {lines:#?}");
+    assert!(holds(&lines, "search_ads             9 │█ "), "a small bar is visible: {lines:#?}");
     act(&mut screen, &company, Action::MoreSeries);
     let lines = picture(&screen, &company, 80, 21);
     assert!(holds(&lines, "█ subs · ▒ price by acquisition_source"), "{lines:#?}");
@@ -242,7 +242,7 @@ fn a_result_is_drawn_as_bars_with_words_and_zero() {
     assert_eq!(screen.scopes()[0], Scope::Result);
     act(&mut screen, &company, Action::Chart);
     act(&mut screen, &company, Action::Filter);
-    assert_eq!(screen.scopes(), [Scope::Field], "filtering goes back to the rows");
+    assert_eq!(screen.scopes(), [Scope::Field], "filtering switches to the rows");
 }
 
 #[test]
@@ -265,7 +265,7 @@ fn a_statement_says_how_its_result_is_drawn() {
     assert!(holds(&picture(&screen, &company, 120, 37), "1,000 "));
     act(&mut screen, &company, Action::RunQuery);
     hear(&mut screen, &company, Ok(rows));
-    assert_eq!(screen.scopes()[0], Scope::Chart, "asked again, it stays a chart");
+    assert_eq!(screen.scopes()[0], Scope::Chart, "running it again keeps the chart");
     act(&mut screen, &company, Action::RunQuery);
     hear(&mut screen, &company, Ok(three_rows()));
     assert_eq!(screen.scopes()[0], Scope::Result, "other columns are shown as rows first");
@@ -301,7 +301,7 @@ fn names_come_from_the_browser() {
         act(&mut screen, &company, action);
     }
     assert_eq!(screen.editor.text(), "SELECT customer_id");
-    assert!(holds(&picture(&screen, &company, 80, 21), "customer_type"), "shown while it is used");
+    assert!(holds(&picture(&screen, &company, 80, 21), "customer_type"), "visible while it has the focus");
 }
 
 #[test]
@@ -327,7 +327,7 @@ fn no_size_is_too_small() {
     let company = company();
     let mut screen = Sql::default();
     sweep(&mut screen, &company);
-    // A sweep leaves the focus on the last pane.
+    // The loop leaves the focus on the last pane.
     screen.focus_on(SqlPane::Editor);
     write(&mut screen, &company, "SELECT * FROM ledger WHERE am");
     sweep(&mut screen, &company);
@@ -368,7 +368,7 @@ fn a_long_query_says_how_long_and_a_named_one_leaves_the_keys_to_its_result() {
     screen.running.as_mut().expect("it runs").since = since;
     assert!(holds(&picture(&screen, &company, 120, 37), " s … esc cancels"));
     hear(&mut screen, &company, Err(Refusal::new("sql_error", "no such column: wrong (at character 8)")));
-    assert_eq!(screen.scopes()[0], Scope::Editor, "the error is mended in the editor");
+    assert_eq!(screen.scopes()[0], Scope::Editor, "the editor has the focus after an error");
 }
 
 #[test]
@@ -382,13 +382,22 @@ fn a_column_is_counted_by_a_query_that_can_be_edited() {
     assert!(matches!(&act(&mut screen, &company, Action::Pivot)[..], [Effect::Complain(_)]), "one at a time");
     hear(&mut screen, &company, Ok(three_rows()));
     let lines = picture(&screen, &company, 120, 37);
-    assert!(holds(&lines, "Result 2/2 · 3 rows") && holds(&lines, " 1 ad_channel_leads ") && holds(&lines, " 2 subs counted "));
+    assert!(
+        holds(&lines, "Result 2/2 · 3 rows")
+            && holds(&lines, " 1 ad_channel_leads ")
+            && holds(&lines, " 2 subs counted ")
+    );
     act(&mut screen, &company, Action::PreviousResult);
     act(&mut screen, &company, Action::RecallQuery);
-    assert_eq!((screen.editor.text().as_str(), screen.focus), ("SELECT * FROM ad_channel_leads", SqlPane::Editor));
+    assert_eq!(
+        (screen.editor.text().as_str(), screen.focus),
+        ("SELECT * FROM ad_channel_leads", SqlPane::Editor)
+    );
     let mut empty = Sql::default();
     empty.focus_on(SqlPane::Results);
-    for action in [Action::CountColumn, Action::Pivot, Action::RecallQuery, Action::CloseResult, Action::PinResult] {
+    for action in
+        [Action::CountColumn, Action::Pivot, Action::RecallQuery, Action::CloseResult, Action::PinResult]
+    {
         assert!(matches!(&act(&mut empty, &company, action)[..], [Effect::Complain(_)]), "{action:?}");
     }
     for action in [Action::CountColumn, Action::Pivot] {
@@ -423,7 +432,7 @@ fn a_count_and_a_pivot_are_made_of_the_rows_that_the_filter_shows() {
     assert!(holds(&picture(&screen, &company, 60, 12), &format!("rows with \"{word}\"")));
     let asked = act(&mut screen, &company, Action::Open);
     assert!(sql(&asked).contains(&clause), "{asked:?}");
-    // No row of SQL is NULL in letters.
+    // In SQL no row has the text "null".
     let mut rows = three_rows();
     rows.rows[1][0] = Cell::Null;
     let mut screen = with_result(&company, "SELECT * FROM ad_channel_leads", rows);
@@ -433,7 +442,10 @@ fn a_count_and_a_pivot_are_made_of_the_rows_that_the_filter_shows() {
     let asked = act(&mut screen, &company, Action::CountColumn);
     let Some(Effect::Say(words)) = asked.last() else { panic!("{asked:?}") };
     let sql = sql(&asked);
-    assert!(sql.contains("counted, all rows") && !sql.contains("WHERE") && words.contains("without the filter"), "{asked:?}");
+    assert!(
+        sql.contains("counted, all rows") && !sql.contains("WHERE") && words.contains("without the filter"),
+        "{asked:?}"
+    );
 }
 
 #[test]

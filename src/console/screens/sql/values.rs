@@ -1,29 +1,29 @@
-//! How values of results are written: on the screen in sensible digits, elsewhere in full.
+//! Formats of result values: rounded on the screen, in full for copying and export.
 
 use serde_json::Value;
 
-use novamind_tui::theme::Role;
-use novamind_tui::widgets::{Cell as Shown, Column};
 use novamind_base::notation::{csv_cell, grouped, printable};
 use novamind_database::{Cell, Rows};
 use novamind_session::rows_as_json;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{Cell as Shown, Column};
 
-/// Widest column on the screen; longer values can be opened.
+/// Maximum column width on the screen; longer values can be opened.
 const WIDEST: u16 = 48;
 
-/// Whether a column holds numbers and nothing else.
+/// Returns whether a column contains only numbers.
 pub fn is_numeric(rows: &Rows, at: usize) -> bool {
     let mut said = rows.rows.iter().filter_map(|row| row.get(at)).filter(|cell| **cell != Cell::Null);
     let is_number = |cell: &Cell| matches!(cell, Cell::Integer(_) | Cell::Real(_));
     said.next().is_some_and(is_number) && said.all(is_number)
 }
 
-/// Decimals with which the numbers of a column are shown.
+/// Returns the number of decimals shown in a column.
 pub fn decimals_shown(rows: &Rows, at: usize) -> usize {
     Style::of(rows, at).decimals
 }
 
-/// Columns of a result as the screen shows them.
+/// Returns the columns of a result for the screen.
 pub fn columns(rows: &Rows) -> Vec<Column> {
     let column = |(at, name): (usize, &String)| {
         if is_numeric(rows, at) { Column::numbers(name.as_str()) } else { Column::words(name.as_str()) }
@@ -31,14 +31,14 @@ pub fn columns(rows: &Rows) -> Vec<Column> {
     rows.columns.iter().enumerate().map(column).map(|column| column.at_most(WIDEST)).collect()
 }
 
-/// Rows of a result as the screen shows them.
+/// Returns the cells of a result for the screen.
 pub fn cells(rows: &Rows) -> Vec<Vec<Shown>> {
     let styles: Vec<Style> = (0..rows.columns.len()).map(|at| Style::of(rows, at)).collect();
     let row = |row: &Vec<Cell>| row.iter().zip(&styles).map(|(cell, style)| style.cell(cell)).collect();
     rows.rows.iter().map(row).collect()
 }
 
-/// How the numbers of a column are written: all in the same way, so that they can be compared.
+/// Number format of a column, the same for all rows.
 struct Style {
     decimals: usize,
     groups: bool,
@@ -60,7 +60,7 @@ impl Style {
             _ if largest >= 1.0 => 4,
             _ => 6,
         };
-        // Numbers of rows and days name something; they are not counted in thousands.
+        // Identifiers and days have no thousands separators.
         let name = rows.columns.get(at).map_or(String::new(), |name| name.to_lowercase());
         let names = ["id", "day", "week", "year", "seed"];
         let groups = !names
@@ -91,12 +91,12 @@ impl Style {
     }
 }
 
-/// Decimals of the shortest exact form of a number.
+/// Returns the number of decimals of the shortest exact form.
 fn decimals_of(number: f64) -> usize {
     number.to_string().split_once('.').map_or(0, |(_, decimals)| decimals.len())
 }
 
-/// A whole number with separators; large ones would lose digits as a float.
+/// Returns a whole number with separators; converting to float would lose digits.
 fn grouped_integer(number: i64) -> String {
     let digits = number.unsigned_abs().to_string();
     let mut text = String::from(if number < 0 { "-" } else { "" });
@@ -109,12 +109,12 @@ fn grouped_integer(number: i64) -> String {
     text
 }
 
-/// The beginning of a text in one line: a row of the screen shows no more.
+/// Returns the start of a text in one line.
 fn flat(text: &str) -> String {
     text.chars().take(400).map(|letter| if letter.is_control() { ' ' } else { letter }).collect()
 }
 
-/// A value in full, as it is copied and exported; NULL is nothing.
+/// Returns a value in full for copying and export; NULL is empty.
 pub fn whole(cell: &Cell) -> String {
     match cell {
         Cell::Null => String::new(),
@@ -124,13 +124,13 @@ pub fn whole(cell: &Cell) -> String {
     }
 }
 
-/// A row with tabs between its values, as spreadsheets take it.
+/// Returns a row with tab separators, as spreadsheets accept it.
 pub fn tabbed(row: &[Cell]) -> String {
     let clean = |cell: &Cell| harmless(cell).replace(['\t', '\n', '\r'], " ");
     row.iter().map(clean).collect::<Vec<_>>().join("\t")
 }
 
-/// A result with its head, with tabs between the values.
+/// Returns a result with headings and tab separators.
 pub fn all_tabbed(rows: &Rows) -> String {
     let mut text = rows.columns.join("\t") + "\n";
     for row in &rows.rows {
@@ -139,9 +139,11 @@ pub fn all_tabbed(rows: &Rows) -> String {
     text
 }
 
-/// A result as a table of Markdown; numbers stand right.
+/// Returns a result as a Markdown table; numbers are right-aligned.
 pub fn markdown(rows: &Rows) -> String {
-    let clean = |text: &str| printable(text).replace('\\', "\\\\").replace('|', "\\|").replace(['\n', '\r', '\t'], " ");
+    let clean = |text: &str| {
+        printable(text).replace('\\', "\\\\").replace('|', "\\|").replace(['\n', '\r', '\t'], " ")
+    };
     let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
     let mut text = line(rows.columns.iter().map(|name| clean(name)).collect());
     let side = |at: usize| if is_numeric(rows, at) { "---:" } else { "---" }.to_owned();
@@ -152,10 +154,10 @@ pub fn markdown(rows: &Rows) -> String {
     text
 }
 
-/// A result as CSV with a head.
+/// Returns a result as CSV with headings.
 ///
 /// # Errors
-/// Never for a buffer in memory; the writer's type asks for it.
+/// Never for a buffer in memory; the writer's type requires the result.
 pub fn csv(rows: &Rows) -> Result<Vec<u8>, String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(&rows.columns).map_err(|error| error.to_string())?;
@@ -165,7 +167,7 @@ pub fn csv(rows: &Rows) -> Result<Vec<u8>, String> {
     writer.into_inner().map_err(|error| error.to_string())
 }
 
-/// A value whole, as a file holds it that other programs open.
+/// Returns a complete value, safe for spreadsheet programs.
 fn harmless(cell: &Cell) -> String {
     match cell {
         Cell::Text(text) => csv_cell(text).into_owned(),
@@ -173,7 +175,7 @@ fn harmless(cell: &Cell) -> String {
     }
 }
 
-/// A result as a JSON list with an object for each row.
+/// Returns a result as a JSON list with one object per row.
 pub fn json(rows: &Rows) -> Vec<u8> {
     let list = rows_as_json(rows).remove("rows").unwrap_or(Value::Array(Vec::new()));
     let mut text = serde_json::to_vec_pretty(&list).unwrap_or_default();

@@ -1,17 +1,16 @@
-//! How a tool was used before in this run.
+//! Earlier calls of a tool in this run.
 
 use serde_json::Value;
 
-use novamind_worker::company::Company;
 use crate::screens::journal::entries::in_words;
 use novamind_report::deals::deals_in_words;
 use novamind_session::JournalEntry;
 use novamind_tools::ToolId;
+use novamind_worker::company::Company;
 
-/// Calls that are told below a form.
 pub const MOST: usize = 10;
 
-/// Calls of a tool, the newest first: decision day and arguments. Calls that repeat the one before are left out.
+/// Calls of a tool, newest first: decision day and arguments, without consecutive duplicates.
 pub fn calls(tool: ToolId, company: &Company, most: usize) -> Vec<(u32, String)> {
     let calls = company.journal.iter().rev().filter_map(|entry| match entry {
         JournalEntry::Call { day, tool: own, args, .. } if *own == tool => Some((*day, args)),
@@ -42,7 +41,9 @@ mod tests {
         let mut session = played(1);
         for price in [14, 14] {
             let arguments = serde_json::json!({ "A": price });
-            session.call("set_prices", &arguments, novamind_record::trajectory::record::Via::Form).expect("a price");
+            session
+                .call("set_prices", &arguments, novamind_record::trajectory::record::Via::Form)
+                .expect("a price");
         }
         let company = Company::of(&session);
         assert_eq!(

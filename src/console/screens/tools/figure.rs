@@ -1,9 +1,9 @@
-//! What is selected among the tools: a tool, or a value of its form with the rows of its history.
+//! The selected tool, or the selected value of its form with a query for its history.
 
 use std::sync::LazyLock;
 
-use crate::context::Figure;
 use super::form::Form;
+use crate::context::Figure;
 use novamind_tools::{ArgumentKind, CATALOGUE, Key, Spec, ToolId};
 
 /// Names of all arguments with their tools: `set_prices.A`.
@@ -20,12 +20,10 @@ fn term_of(tool: ToolId, argument: &str) -> Option<&'static str> {
         .find(|name| name.split_once('.').is_some_and(|(own, rest)| own == tool.name() && rest == argument))
 }
 
-/// A tool as a whole.
 pub(super) fn of_tool(spec: &'static Spec) -> Figure {
     Figure { title: spec.summary.to_owned(), term: spec.name(), sql: None, why: None }
 }
 
-/// The value that is selected in a form.
 pub(super) fn of_cell(form: &Form) -> Option<Figure> {
     let block = form.sheet.blocks.get(form.at.block)?;
     form.sheet.slot(form.at)?;
@@ -33,10 +31,12 @@ pub(super) fn of_cell(form: &Form) -> Option<Figure> {
     Some(Figure {
         title: format!("{tool} {}", block.path(form.at.row, form.at.column).replace('.', " ")),
         term: term_of(tool, block.argument.name)?,
-        sql: history(form), why: None })
+        sql: history(form),
+        why: None,
+    })
 }
 
-/// How the value was set over time, or what came of it.
+/// Returns the query for the value over time, or for its effect.
 fn history(form: &Form) -> Option<String> {
     let block = form.sheet.blocks.get(form.at.block)?;
     let name = block.argument.name;

@@ -1,4 +1,4 @@
-//! A form: where the person is in a sheet, what is typed, what the call would do, what came of it.
+//! A form: position in the sheet, typed input, check of the call, and the last answer.
 
 use std::collections::BTreeMap;
 
@@ -13,8 +13,8 @@ use crate::effect::Effect;
 use novamind_base::notation::{dollars, parse_number};
 use novamind_report::count;
 use novamind_report::research::outlook_lines;
-use novamind_tools::{Refusal, ArgumentKind, Key, Kind, Spec};
 use novamind_session::Preview;
+use novamind_tools::{ArgumentKind, Key, Kind, Refusal, Spec};
 use novamind_tui::chord::Chord;
 use novamind_tui::widgets::field::ONLY_NUMBERS;
 use novamind_tui::widgets::{Editor, Field};
@@ -22,39 +22,34 @@ use novamind_worker::asking::Pending;
 use novamind_worker::company::Company;
 use novamind_worker::questions::CallCheck;
 
-/// A form of one tool.
 pub struct Form {
-    /// The tool.
     pub spec: &'static Spec,
-    /// Whether the run has the tool.
+    /// Whether the run offers the tool.
     is_offered: bool,
-    /// Values.
     pub sheet: Sheet,
-    /// The cell that has the focus.
     pub at: CellPlace,
-    /// The cell is being typed into; what it held before.
+    /// While the user types into the cell: its previous draft.
     pub typing: Option<Option<Field>>,
-    /// The lines of the code that is being written; the cell's draft follows them.
+    /// The code editor; the draft of the cell follows its text.
     writing: Option<Box<Editor>>,
-    /// The cell that enter has just left: what is copied down then is what was typed.
+    /// The cell that enter has just left. Copying down then uses the typed value.
     left: Option<CellPlace>,
-    /// A customer number is being typed, to add a row to a block.
+    /// The customer number being typed to add a row to a block.
     pub adding: Option<(usize, Field)>,
-    /// What the last reset discarded, by path: a second one brings it back.
+    /// Drafts that the last reset discarded, by path. A second reset restores them.
     dropped: BTreeMap<String, String>,
-    /// What the call would do, as far as is known.
+    /// The check of the call, if it has arrived.
     pub preview: Option<Result<Preview, Refusal>>,
     checking: Pending<CallCheck>,
-    /// The arguments that were sent last, of a tool that keeps its form.
+    /// The last sent arguments of a tool that keeps its form.
     sent: Option<Value>,
-    /// The last answer.
     pub answer: Option<Result<Value, Refusal>>,
-    /// How the tool was used before: decision day and arguments, the newest first.
+    /// Earlier calls of the tool: decision day and arguments, newest first.
     pub earlier: Vec<(u32, String)>,
 }
 
 impl Form {
-    /// The form over what holds now.
+    /// Returns the form with the current values.
     pub fn of(spec: &'static Spec, company: &Company) -> Form {
         Form {
             spec,
@@ -74,24 +69,25 @@ impl Form {
         }
     }
 
-    /// Whether it holds values that were not sent and can be: reads have none, and a lesson does without some tools.
+    /// Returns whether it has unsent values that can be sent. Reading tools have none, and lessons lock some
+    /// tools.
     pub fn is_draft(&self) -> bool {
         let is_sent = || self.sent.is_some() && self.sheet.arguments().ok() == self.sent;
         let can_be_sent = self.spec.kind.acts() || (self.spec.id.runs_code() && !is_sent());
         self.is_offered && can_be_sent && self.sheet.is_changed()
     }
 
-    /// Whether characters are typed.
+    /// Returns whether keys type characters.
     pub fn is_typing(&self) -> bool {
         self.typing.is_some() || self.adding.is_some()
     }
 
-    /// The editor of the code that is being written.
+    /// Returns the code editor, while it is open.
     pub fn writing(&self) -> Option<&Editor> {
         self.writing.as_deref()
     }
 
-    /// Takes over what holds now; drafts stay.
+    /// Updates the current values and keeps the drafts.
     pub fn renew(&mut self, company: &Company) {
         self.is_offered = company.has_tool(self.spec.id);
         self.sheet = self.sheet.renewed(company);
@@ -100,7 +96,7 @@ impl Form {
         self.keep_inside();
     }
 
-    /// Forgets the drafts, and begins at the first cell: who comes again fills it in from the top.
+    /// Discards the drafts and selects the first cell.
     pub fn reset(&mut self, company: &Company) {
         self.sheet = Sheet::of(self.spec, company);
         self.at = CellPlace::default();
@@ -110,23 +106,23 @@ impl Form {
         self.keep_inside();
     }
 
-    /// Drops the drafts; done again before anything else is typed, it brings them back.
+    /// Discards the drafts. Repeated before other input, it restores them.
     fn drop_drafts(&mut self, company: &Company) -> Vec<Effect> {
         if self.sheet.is_changed() {
             let typed = self.sheet.typed();
             self.reset(company);
             self.dropped = typed;
             let dropped = count(self.dropped.len() as u32, "value");
-            return vec![Effect::Say(format!("{dropped} discarded; reset again brings back what was typed"))];
+            return vec![Effect::Say(format!("{dropped} discarded. Reset again to restore them."))];
         }
         let dropped = std::mem::take(&mut self.dropped);
         if dropped.is_empty() {
-            return vec![Effect::Complain("nothing to reset: the form shows the current values".to_owned())];
+            return vec![Effect::Complain("Nothing to reset. The form shows the current values.".to_owned())];
         }
         self.reset(company);
         self.sheet.retype(&dropped);
         let mut effects = self.check();
-        effects.push(Effect::Say(format!("{} brought back", count(dropped.len() as u32, "value"))));
+        effects.push(Effect::Say(format!("{} restored", count(dropped.len() as u32, "value"))));
         effects
     }
 
@@ -136,13 +132,13 @@ impl Form {
         }
     }
 
-    /// The equivalent call, as a program would write it.
+    /// Returns the equivalent call in a program.
     pub fn call(&self) -> String {
         let arguments = self.sheet.arguments().map_or("…".to_owned(), |arguments| spaced(&arguments));
         format!("{}.{}({arguments})", self.spec.module.id(), self.spec.name())
     }
 
-    /// Channel and group of the cell with the focus, in the matrix of advertising.
+    /// Returns the channel and group of the focused cell in the advertising matrix.
     pub fn cell_names(&self) -> Option<(&str, &str)> {
         let block = self.sheet.blocks.get(self.at.block)?;
         match block.argument.kind {
@@ -153,12 +149,12 @@ impl Form {
         }
     }
 
-    /// Asks what the call would do.
+    /// Checks the call without executing it.
     pub fn check(&mut self) -> Vec<Effect> {
         self.preview = None;
         self.checking.cancel();
         if self.spec.id.runs_code() {
-            // What was said of the code as it was.
+            // The answer belonged to the previous code.
             self.answer = None;
         }
         let quiet = match self.spec.kind {
@@ -174,14 +170,13 @@ impl Form {
         }
     }
 
-    /// Takes what the call would do.
     pub fn take_preview(&mut self) {
         if let Some((_, preview)) = self.checking.try_take() {
             self.preview = Some(preview);
         }
     }
 
-    /// Sends the call, or says why not.
+    /// Sends the call, or explains why it cannot be sent.
     pub fn apply(&mut self) -> Vec<Effect> {
         (self.typing, self.writing) = (None, None);
         let arguments = match self.sheet.arguments() {
@@ -197,7 +192,7 @@ impl Form {
         self.sent = tool.runs_code().then(|| arguments.clone());
         match self.spec.kind {
             Kind::Setting if !self.sheet.is_changed() => {
-                vec![Effect::Complain("nothing has changed; enter a value first".to_owned())]
+                vec![Effect::Complain("Nothing has changed. Enter a value first.".to_owned())]
             }
             Kind::Purchase => match &self.preview {
                 Some(Ok(preview)) => {
@@ -220,7 +215,6 @@ impl Form {
         }
     }
 
-    /// Does an action of the form or of a list.
     pub fn act(&mut self, action: Action, company: &Company) -> Vec<Effect> {
         let left = self.left.take();
         match action {
@@ -263,12 +257,12 @@ impl Form {
             self.typing = Some(slot.draft.clone());
             let held = slot.text();
             self.writing = is_code.then(|| Box::new(Editor::of(&held).unwrapped()));
-            // A number is replaced by what is typed; words are changed.
+            // Typing replaces a number but edits a text.
             slot.draft = Some(if text { Field::of(held) } else { Field::to_replace(held) });
         }
     }
 
-    /// Goes on typing behind what the cell holds.
+    /// Continues typing after the text of the cell.
     fn go_on_here(&mut self) {
         if let Some(slot) = self.sheet.slot_mut(self.at) {
             self.typing = Some(slot.draft.clone());
@@ -276,18 +270,17 @@ impl Form {
         }
     }
 
-    /// Whether a digit begins the number of the cell with the focus.
+    /// Returns whether a digit starts a number in the focused cell.
     pub fn takes_numbers(&self) -> bool {
         let is_cell = self.sheet.slot(self.at).is_some() && !self.is_at_text();
         !self.is_typing() && (is_cell || self.at_adding_row().is_some())
     }
 
-    /// Whether the focus is on a line of text.
     fn is_at_text(&self) -> bool {
         self.sheet.blocks.get(self.at.block).is_some_and(super::sheet::Block::is_text)
     }
 
-    /// The block whose last line adds a row, if the focus is there.
+    /// Returns the block whose last line adds a row, if that line has the focus.
     pub fn at_adding_row(&self) -> Option<usize> {
         let block = self.sheet.blocks.get(self.at.block)?;
         (block.is_open() && self.at.row == block.rows.len()).then_some(self.at.block)
@@ -299,7 +292,7 @@ impl Form {
                 return Vec::new();
             }
             if !self.sheet.add_customer(block, field.text()) {
-                return vec![Effect::Complain("a customer number is expected, for instance 17".to_owned())];
+                return vec![Effect::Complain("Type a customer number, for example 17".to_owned())];
             }
             self.at = CellPlace { block, row: self.sheet.blocks[block].rows.len() - 1, column: 0 };
             self.edit();
@@ -312,8 +305,8 @@ impl Form {
             Action::CommitPrevious => self.walk(Action::Up),
             _ => self.walk(Action::Down),
         }
-        // Enter ends typing; the keys that move go on in the cell they lead to, but not in the one that was typed. Below
-        // the last row, typing stays open: digits that follow are meant for the form and must not switch screens.
+        // Enter ends typing; movement keys continue typing in the next cell. Below the last row, typing stays
+        // open so that further digits do not switch screens.
         match action {
             Action::CommitDown if self.at == left => self.go_on_here(),
             Action::Commit => self.left = Some(left),
@@ -323,21 +316,21 @@ impl Form {
         self.check()
     }
 
-    /// Takes what was typed into a cell as its draft.
+    /// Stores the typed text as the draft of its cell.
     fn settle(&mut self) {
         self.typing = None;
         let scalar = self.sheet.blocks.get(self.at.block).is_some_and(super::sheet::Block::is_scalar);
         if let Some(slot) = self.sheet.slot_mut(self.at) {
             let text = slot.draft.as_ref().map_or("", Field::text).trim();
             let same = !slot.is_changed() && parse_number(text).is_some();
-            // What was typed is what holds, or a number was emptied: the cell counts as untouched.
+            // The text equals the current value, or a number was cleared: the cell is unchanged.
             if same || (scalar && text.is_empty()) {
                 slot.draft = None;
             }
         }
     }
 
-    /// Ends typing where it is; what was typed stays a draft.
+    /// Ends typing and keeps the draft.
     pub fn stop_typing(&mut self) {
         self.adding = None;
         self.writing = None;
@@ -346,21 +339,21 @@ impl Form {
         }
     }
 
-    /// What is typed into it, in the order of its cells.
+    /// Returns the typed text in the order of the cells.
     pub fn typed_text(&self) -> String {
         let adding = self.adding.iter().map(|(_, field)| field.text());
         let drafts = self.sheet.places().filter_map(|place| self.sheet.slot(place)?.draft.as_ref());
         drafts.map(Field::text).chain(adding).collect::<Vec<_>>().join(BETWEEN_CELLS)
     }
 
-    /// Copies what a cell holds to those below it.
+    /// Copies the value of a cell to the cells below.
     fn same_down(&mut self, from: CellPlace) -> Vec<Effect> {
         let text = self.sheet.slot(from).map(super::sheet::Slot::text).unwrap_or_default();
         if text.trim().is_empty() {
-            return vec![Effect::Complain("this cell is empty: there is no value to copy down".to_owned())];
+            return vec![Effect::Complain("This cell is empty. There is no value to copy down.".to_owned())];
         }
         let below = self.sheet.blocks[from.block].rows.len();
-        // A block of one row stands for one argument; those below it are meant then.
+        // A block of one row is a single argument, so the blocks below are filled.
         let blocks = if self.sheet.blocks[from.block].is_scalar() {
             (from.block..self.sheet.blocks.len()).filter(|at| self.sheet.blocks[*at].is_scalar()).collect()
         } else {
@@ -385,7 +378,7 @@ impl Form {
         self.check()
     }
 
-    /// Lines that can have the focus, in reading order: block, row, number of cells.
+    /// Returns the focusable lines in reading order: block, row, number of cells.
     fn lines(&self) -> Vec<(usize, usize, usize)> {
         let mut lines = Vec::new();
         for (at, block) in self.sheet.blocks.iter().enumerate() {
@@ -430,7 +423,6 @@ impl Form {
         self.at = CellPlace { block, row, column: self.at.column.min(cells - 1) };
     }
 
-    /// Takes a key that is typed into a cell.
     pub fn key(&mut self, key: &KeyEvent) -> Vec<Effect> {
         self.left = None;
         if self.takes_numbers() && Chord::of(key).begins_number() {
@@ -459,7 +451,7 @@ impl Form {
         Vec::new()
     }
 
-    /// Takes what the editor holds as the draft of its cell.
+    /// Stores the code as the draft of its cell.
     fn take_written(&mut self) -> Vec<Effect> {
         if let (Some(editor), Some(slot)) = (&self.writing, self.sheet.slot_mut(self.at)) {
             slot.draft = Some(Field::of(editor.text()));
@@ -467,7 +459,6 @@ impl Form {
         self.check()
     }
 
-    /// Takes pasted text.
     pub fn paste(&mut self, text: &str) -> Vec<Effect> {
         if self.typing.is_none() && self.adding.is_none() {
             self.edit();
@@ -489,7 +480,7 @@ impl Form {
     }
 }
 
-/// JSON with blanks after its commas and colons, so that it can be read and broken into lines.
+/// Returns the JSON with spaces after commas and colons, so that lines can wrap.
 pub(super) fn spaced(value: &Value) -> String {
     match value {
         Value::Object(fields) => {

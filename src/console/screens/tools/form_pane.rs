@@ -1,4 +1,4 @@
-//! The form of the selected tool: what it does, its values, what the call would do, how it was used before.
+//! The form of the selected tool: description, values, check of the call, and earlier calls.
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
@@ -10,16 +10,15 @@ use super::outcome::{Detail, OutcomeLines, outcome_lines};
 use super::sheet::Block;
 use super::{Tools, ToolsPane, figure};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_tools::{Numbers, Spec, ToolId, When, describe};
 use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Editor;
 
-/// The form.
 pub struct FormPane;
 
 impl Pane<Tools> for FormPane {
@@ -120,7 +119,7 @@ impl Pane<Tools> for FormPane {
         let Laid { head, outcome, gap } = lay_out(tools, form, inside, look);
         let lines = form_lines(form);
         let below = draw_head(&head, canvas, inside);
-        // In a dense form what is typed has to be seen; otherwise half of the room is for what comes of it.
+        // A dense form keeps the edited values visible; otherwise up to half of the rows are for the outcome.
         let kept = if gap == 0 { 0 } else { outcome.lines.len().min(below.height as usize / 2) };
         let room = below.height.saturating_sub(kept as u16);
         let sheet = Rect { height: (lines.len() as u16).min(room), ..below };
@@ -133,33 +132,32 @@ impl Pane<Tools> for FormPane {
     }
 }
 
-/// The code that is being written: it has the whole form.
 fn draw_code(editor: &Editor, canvas: &mut Canvas<'_>, area: Rect, focused: bool) {
     let (row, _) = editor.cursor();
     let words = format!("code, line {} of {}", row + 1, editor.lines().len());
     canvas.text(Rect { height: area.height.min(1), ..area }, &words, Role::Header);
-    editor.draw(canvas, under(area, 1), focused, "SQL, or Python that begins with #");
+    editor.draw(canvas, under(area, 1), focused, "SQL, or Python that starts with #");
 }
 
-/// What is left of an area below its first rows.
+/// Returns the area below its first rows.
 fn under(area: Rect, rows: u16) -> Rect {
     let rows = rows.min(area.height);
     Rect { y: area.y + rows, height: area.height - rows, ..area }
 }
 
-/// Width from which on the margins in brief have a line for each plan.
+/// Width from which the short margins have a line per plan.
 const BRIEF: usize = 36;
 
-/// How a form is laid out.
 struct Laid {
-    /// What the tool does and costs, with a blank row where there is room.
+    /// Description and cost of the tool, with a blank row if it fits.
     head: Vec<(String, Role)>,
     outcome: OutcomeLines,
     /// Blank rows below the values.
     gap: u16,
 }
 
-/// Everything in its usual form if the margins have room in it, otherwise denser, with as much of the head as fits.
+/// Chooses the normal layout if the margins fit, otherwise a denser one with as much of the description as
+/// fits.
 fn lay_out(tools: &Tools, form: &Form, area: Rect, look: &Look<'_>) -> Laid {
     let (width, values) = (area.width as usize, form_lines(form).len());
     let lines = |text: &str, role: Role| wrapped(text, width).into_iter().map(move |line| (line, role));
@@ -170,7 +168,7 @@ fn lay_out(tools: &Tools, form: &Form, area: Rect, look: &Look<'_>) -> Laid {
     let terms: Vec<_> = summary.iter().cloned().chain(lines(&terms, Role::Text)).collect();
     let blank: Vec<_> = terms.iter().cloned().chain([(String::new(), Role::Text)]).collect();
     let told = |detail| outcome_lines(form, &tools.leads, &tools.sales, look, (width, detail));
-    // A row is kept for what says that there is more.
+    // Keep a row for the note that text is cut.
     let fits = |head: &[(String, Role)], gap: usize, outcome: &OutcomeLines| {
         head.len() + values + gap + outcome.needed < area.height as usize && !outcome.is_cut(width)
     };
@@ -184,7 +182,6 @@ fn lay_out(tools: &Tools, form: &Form, area: Rect, look: &Look<'_>) -> Laid {
     Laid { head, outcome, gap: 0 }
 }
 
-/// What the tool does and costs; returns the area below.
 fn draw_head(head: &[(String, Role)], canvas: &mut Canvas<'_>, area: Rect) -> Rect {
     let lines: Vec<TextLine<'_>> =
         head.iter().map(|(text, role)| TextLine::from(canvas.span(text.as_str(), *role))).collect();
@@ -192,22 +189,22 @@ fn draw_head(head: &[(String, Role)], canvas: &mut Canvas<'_>, area: Rect) -> Re
     under(area, head.len() as u16)
 }
 
-/// What the call would do, and what came of it; returns the rows taken.
+/// Draws the check of the call and the answer; returns the number of rows.
 fn draw_outcome(lines: &[(String, Role)], canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) -> u16 {
     let mut shown: Vec<TextLine<'_>> =
         lines.iter().map(|(text, role)| TextLine::from(canvas.span(text.as_str(), *role))).collect();
-    // What has no room here stands in the manual.
+    // The manual has the complete text.
     if shown.len() > area.height as usize && area.height > 0 {
         shown.truncate(area.height as usize - 1);
         let explain = look.keys.label(Action::Explain).unwrap_or_default();
-        let more = format!("… {explain} in the list of tools explains the rest");
+        let more = format!("… {explain} in the list of tools shows the rest");
         shown.push(TextLine::from(canvas.span(more, Role::Dim)));
     }
     canvas.lines(area, &shown);
     shown.len() as u16
 }
 
-/// How the tool was used before, where there is room for it; returns the rows taken, with a blank one.
+/// Draws earlier calls if they fit; returns the number of rows, including a blank one.
 fn draw_earlier(calls: &[(u32, String)], canvas: &mut Canvas<'_>, area: Rect) -> u16 {
     if calls.is_empty() || area.height < 3 {
         return 0;
@@ -223,7 +220,7 @@ fn draw_earlier(calls: &[(u32, String)], canvas: &mut Canvas<'_>, area: Rect) ->
     used
 }
 
-/// The manual of the tool, in large windows.
+/// Draws the manual of the tool in large windows.
 fn draw_manual(spec: &Spec, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
     if area.height < 8 {
         return;
@@ -262,21 +259,21 @@ fn keys(form: &Form, look: &Look<'_>) -> String {
 
 fn when(spec: &Spec) -> &'static str {
     match spec.when {
-        When::NextDay => "acts from tomorrow",
-        When::NextBilling => "acts on each next bill",
-        When::Now => "acts at once",
-        When::AtCompletion => "acts when it is done",
-        When::CustomerReply => "acts when the customer answers",
-        When::Never => "reads",
+        When::NextDay => "takes effect tomorrow",
+        When::NextBilling => "takes effect with the next bill",
+        When::Now => "takes effect at once",
+        When::AtCompletion => "takes effect on completion",
+        When::CustomerReply => "takes effect when the customer answers",
+        When::Never => "read-only",
     }
 }
 
-/// Cost and effect date of any call of the tool, before anything is typed.
+/// Returns the cost and effect date of any call of the tool.
 fn terms(spec: &Spec, numbers: &Numbers, today: u32) -> String {
     let from = match spec.when {
-        When::NextDay => format!(" Acts from day {}.", today + 1),
-        When::NextBilling => format!(" From day {} on, each customer with the next bill.", today + 1),
-        When::Now if spec.kind.acts() => format!(" Acts at once, on day {today}."),
+        When::NextDay => format!(" Takes effect on day {}.", today + 1),
+        When::NextBilling => format!(" From day {}, with each customer's next bill.", today + 1),
+        When::Now if spec.kind.acts() => format!(" Takes effect at once, on day {today}."),
         _ => String::new(),
     };
     format!("Costs {}.{from}", numbers.fill(spec.cost))

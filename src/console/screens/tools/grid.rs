@@ -1,4 +1,4 @@
-//! The values of a form: now → new, one line per value or row of a matrix, with sums.
+//! Draws the values of a form: now → new, one line per value or row of a matrix, with sums.
 
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
@@ -11,32 +11,28 @@ use novamind_tui::text::number;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_row;
 
-/// Width of the names of rows.
 const NAME: u16 = 19;
 
-/// Width of the column that says what a channel brought.
+/// Width of the column with the results of a channel.
 const SIDE: u16 = 20;
 
-/// Width of a cell of a block: many columns have to share the window.
+/// Returns the width of a cell; blocks with many columns have narrower cells.
 fn cell_width(block: &Block) -> u16 {
     if block.columns.len() > 1 { 9 } else { 12 }
 }
 
-/// A line of the form.
 pub(super) enum FormLine {
-    /// Name of an argument with the names of its columns.
+    /// Name of an argument with its column headings.
     Head(usize),
-    /// A row of a block.
     Row(usize, usize),
-    /// Where a customer is added.
+    /// Input to add a customer.
     Add(usize),
     /// Sums of a block.
     Total(usize),
-    /// The sums that hold now, below those of a matrix that would change.
+    /// Current sums, below those of a changed matrix.
     Was(usize),
 }
 
-/// The lines of a form.
 pub(super) fn form_lines(form: &Form) -> Vec<FormLine> {
     let mut lines = Vec::new();
     for (at, block) in form.sheet.blocks.iter().enumerate() {
@@ -58,7 +54,7 @@ pub(super) fn form_lines(form: &Form) -> Vec<FormLine> {
     lines
 }
 
-/// Draws the lines that fit, with the focused one among them.
+/// Draws the lines that fit, including the focused one.
 pub(super) fn draw_sheet(
     form: &Form,
     leads: &Leads,
@@ -90,7 +86,7 @@ pub(super) fn draw_sheet(
     }
 }
 
-/// Place of what each channel brought: beside a whole matrix, or where the window is wide anyway.
+/// Returns the area for the results of each channel: next to a complete matrix, or in wide windows.
 fn side_of(form: &Form, leads: &Leads, area: Rect) -> Rect {
     let none = Rect { width: 0, ..area };
     let Some(block) = form.sheet.blocks.iter().find(|block| leads.is_of(block)) else { return none };
@@ -112,7 +108,7 @@ fn draw_side(form: &Form, leads: &Leads, line: &FormLine, canvas: &mut Canvas<'_
     }
 }
 
-/// Columns of a block that fit beside the names, so that the focused one is seen.
+/// Returns the columns of a block that fit, including the focused one.
 fn columns_shown(form: &Form, at: usize, width: u16) -> std::ops::Range<usize> {
     let block = &form.sheet.blocks[at];
     let cell = cell_width(block);
@@ -150,7 +146,7 @@ fn draw_head(form: &Form, at: usize, canvas: &mut Canvas<'_>, row: Rect) {
         canvas.aligned(cell_area(block, row, place), &block.columns[column], Role::Header, Align::Right);
     }
     canvas.aligned(cell_area(block, row, shown.len()), "total", Role::Header, Align::Right);
-    // Columns that have no room stand beyond these signs.
+    // Signs mark columns that do not fit.
     let between =
         |place: usize| Rect { x: row.x + NAME + place as u16 * cell_width(block) - 1, width: 1, ..row };
     if shown.start > 0 {
@@ -196,14 +192,14 @@ fn draw_row(form: &Form, at: usize, index: usize, canvas: &mut Canvas<'_>, row: 
     if block.is_scalar() {
         let short = format!("{}, {}", block.argument.unit, block.range().words());
         let brief = block.doc.split("; ").next().unwrap_or_default();
-        // The longest words that are not cut.
+        // The longest text that fits.
         let words = [format!("{short} · {}", block.doc), format!("{short} · {brief}")];
         let fitting = words.into_iter().find(|words| words.width() <= usize::from(doc.width));
         canvas.text(doc, &fitting.unwrap_or(short), Role::Text);
     }
 }
 
-/// A line of text takes the whole row.
+/// Draws a text line, which takes the whole row.
 fn draw_text(form: &Form, at: usize, canvas: &mut Canvas<'_>, row: Rect, here: bool) {
     let place = CellPlace { block: at, row: 0, column: 0 };
     let Some(slot) = form.sheet.slot(place) else { return };
@@ -223,7 +219,7 @@ fn draw_text(form: &Form, at: usize, canvas: &mut Canvas<'_>, row: Rect, here: b
     canvas.text(row, if text.is_empty() { "·" } else { &text }, role);
 }
 
-/// A text in one line: of several the first, and how many there are.
+/// Returns a text in one line: its first line, and the number of lines.
 fn in_a_line(text: &str) -> String {
     match text.split_once('\n') {
         None => text.to_owned(),
@@ -314,7 +310,7 @@ fn draw_total(form: &Form, at: usize, canvas: &mut Canvas<'_>, row: Rect) {
     }
 }
 
-/// What the sums of a matrix are now, and by how much they would change.
+/// Draws the current sums of a matrix and their change.
 fn draw_was(form: &Form, at: usize, canvas: &mut Canvas<'_>, row: Rect) {
     let block = &form.sheet.blocks[at];
     let change = block.total() - block.total_now();

@@ -1,20 +1,19 @@
-//! The list of all tools.
+//! List of all tools.
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use super::{Tools, ToolsPane, figure};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_tools::{Module, Spec};
 use novamind_tui::canvas::{Align, Canvas, Click, fit, rows_of};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;
 use novamind_tui::widgets::table::first_row;
 
-/// The tools by module.
 pub struct ToolListPane;
 
 impl Pane<Tools> for ToolListPane {
@@ -102,7 +101,7 @@ impl Pane<Tools> for ToolListPane {
     fn draw(&self, tools: &Tools, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
         let lines = lines_of(tools);
         if lines.is_empty() {
-            let text = format!("no matching tool: {}", look.hint(Action::Close));
+            let text = format!("No matching tool: {}", look.hint(Action::Close));
             canvas.text(seat.area, &text, Role::Dim);
         }
         let field = u16::from(tools.typing.is_some());
@@ -132,7 +131,7 @@ impl Pane<Tools> for ToolListPane {
     }
 }
 
-/// A line of the list: the head of a module, or a tool with its place.
+/// A line of the list: the heading of a module, or a tool with its index.
 enum ListLine {
     Module(Module),
     Tool(usize, &'static Spec),
@@ -152,7 +151,7 @@ fn lines_of(tools: &Tools) -> Vec<ListLine> {
     lines
 }
 
-/// Draws a tool, and whether the lesson has it; one that is selected says whether the list has the focus.
+/// Draws a tool, marked if the lesson locks it; the selected one shows whether the list has the focus.
 fn draw_tool(
     tools: &Tools,
     canvas: &mut Canvas<'_>,

@@ -1,13 +1,13 @@
-//! The margins that a draft of prices, model tiers or quotas would leave.
+//! Margins that a draft of prices, model tiers or quotas would result in.
 
 use super::form::Form;
-use novamind_worker::company::Company;
 use novamind_report::plan_margins::{Lever, PlanTerms, Sales, margin_lines, margin_summary};
-use novamind_tools::ToolId;
 use novamind_session::identifiers::ByPlan;
+use novamind_tools::ToolId;
+use novamind_worker::company::Company;
 
-/// Lines beside a form, the first one a head: on every model, or in brief on the own one; empty where no margin follows
-/// from its tool.
+/// Returns the margin lines for a form, heading first: for every model tier, or in brief for the set tier
+/// only. Empty for other tools.
 pub fn margins(form: &Form, sales: &Sales, company: &Company, brief: bool) -> Vec<String> {
     let Some(lever) = Lever::of(form.spec.id) else { return Vec::new() };
     let now = ByPlan::from_fn(|plan| PlanTerms {

@@ -1,4 +1,4 @@
-//! Forms of all tools, made from the catalogue.
+//! Forms of all tools, generated from the catalog.
 
 mod earlier;
 mod figure;
@@ -19,18 +19,17 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use serde_json::Value;
 use strum::VariantArray;
 
-use super::panes::{Pane, Paned, draw_pane};
-use crate::context::{Look, ScreenId};
 use super::ScreenState;
+use super::panes::{Pane, Paned, draw_pane};
 use crate::action::Action;
+use crate::context::{Look, ScreenId};
 use crate::effect::Effect;
 use form::{Form, spaced};
-use outcome::Leads;
 use novamind_base::notation::plain_numbers;
+use novamind_database::Rows;
 use novamind_report::insights::{insights_as_ranges, overview_with_ages};
 use novamind_report::plan_margins::Sales;
 use novamind_report::research::projects_with_means;
-use novamind_database::Rows;
 use novamind_session::JournalEntry;
 use novamind_tools::{Answer, CATALOGUE, Spec, ToolId};
 use novamind_tui::canvas::Canvas;
@@ -38,33 +37,34 @@ use novamind_tui::widgets::Field;
 use novamind_worker::company::Company;
 use novamind_worker::message::News;
 use novamind_worker::readings::Reading;
+use outcome::Leads;
 
-/// Its panes.
+/// Panes of the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
 pub enum ToolsPane {
-    /// Every tool.
+    /// List of all tools.
     #[default]
     List,
-    /// The form of the selected one.
+    /// Form of the selected tool.
     Form,
 }
 
-/// The screen.
+/// The tools screen.
 #[derive(Default)]
 pub struct Tools {
     focus: ToolsPane,
-    /// Place among the tools that are shown.
+    /// Index among the shown tools.
     selected: usize,
     filter: String,
     typing: Option<Field>,
-    /// Forms that were opened, with their drafts.
+    /// Opened forms with their drafts.
     forms: BTreeMap<ToolId, Form>,
     leads: Leads,
     sales: Sales,
 }
 
 impl Tools {
-    /// Tools that the filter leaves, in the order of the catalogue.
+    /// Returns the tools that pass the filter, in catalog order.
     fn shown(&self) -> Vec<&'static Spec> {
         let wanted = self.filter.to_lowercase();
         let fits = |spec: &&'static Spec| {
@@ -75,7 +75,6 @@ impl Tools {
         CATALOGUE.iter().map(|tool| tool.spec()).filter(fits).collect()
     }
 
-    /// The tool that is selected.
     fn here(&self) -> Option<&'static Spec> {
         self.shown().get(self.selected).copied()
     }
@@ -102,7 +101,7 @@ impl Tools {
         }
     }
 
-    /// Shows the form of a tool at the first cell that is for a group, a plan or the like.
+    /// Shows the form of a tool and focuses the first cell of a group, plan or similar.
     pub fn show_cell(&mut self, tool: ToolId, of: &str, company: &Company) {
         self.show(tool, company);
         if let Some(form) = self.form(company)
@@ -112,7 +111,7 @@ impl Tools {
         }
     }
 
-    /// Path of the cell that has the focus.
+    /// Returns the path of the focused cell.
     #[cfg(test)]
     pub fn place_path(&self) -> Option<String> {
         let form = self.seen_form()?;
@@ -120,13 +119,13 @@ impl Tools {
         Some(block.path(form.at.row, form.at.column))
     }
 
-    /// Arguments that the form on screen would send.
+    /// Returns the arguments that the shown form would send.
     #[cfg(test)]
     pub fn typed_arguments(&self) -> Option<Value> {
         self.seen_form()?.sheet.arguments().ok()
     }
 
-    /// Shows the form of a tool with arguments typed into it.
+    /// Shows the form of a tool with arguments filled in.
     pub fn prefill(&mut self, tool: ToolId, arguments: &Value, company: &Company) -> Vec<Effect> {
         self.show(tool, company);
         self.form(company).map_or(Vec::new(), |form| {
@@ -139,30 +138,30 @@ impl Tools {
         self.forms.values().filter(|form| form.is_draft())
     }
 
-    /// Tools whose forms hold values that were not sent.
+    /// Returns the tools whose forms have unsent values.
     pub fn unsent(&self) -> Vec<ToolId> {
         self.drafts().map(|form| form.spec.id).collect()
     }
 
-    /// Name of the tool whose form is shown.
+    /// Returns the name of the tool whose form is shown.
     pub fn form_name(&self) -> Option<&'static str> {
         self.here().map(Spec::name)
     }
 
-    /// Values that were typed into forms and not sent, by tool and path.
+    /// Returns the unsent values by tool and path.
     pub fn typed_values(&self) -> BTreeMap<ToolId, BTreeMap<String, String>> {
         let unsent = self.unsent().into_iter();
         unsent.filter_map(|tool| Some((tool, self.forms.get(&tool)?.sheet.typed()))).collect()
     }
 
-    /// Types values into a form again.
+    /// Restores unsent values.
     pub fn restore(&mut self, tool: ToolId, values: &BTreeMap<String, String>, company: &Company) {
         let Some(spec) = CATALOGUE.iter().map(|own| own.spec()).find(|spec| spec.id == tool) else { return };
         let form = self.forms.entry(tool).or_insert_with(|| Form::of(spec, company));
         form.sheet.retype(values);
     }
 
-    /// Tools that have a screen or a dialog of their own lead there.
+    /// Opens the separate screen or dialog of a tool, if it has one.
     fn elsewhere(&self) -> Option<Effect> {
         match self.here()?.id {
             ToolId::NextWeek => Some(Effect::Do(Action::NextWeek)),
@@ -171,7 +170,7 @@ impl Tools {
         }
     }
 
-    /// The calls of this week and of drafts, one in a line, as they are copied.
+    /// Returns this week's calls and drafts, one per line, for copying.
     fn calls(&self, company: &Company) -> String {
         let day = company.seen.day;
         let done = company.journal.iter().filter_map(|entry| match entry {
@@ -221,18 +220,18 @@ impl ScreenState for Tools {
 
     fn hear(&mut self, news: &News, look: &Look<'_>) -> Vec<Effect> {
         match news {
-            // What a form said of its call holds no longer.
+            // The last check and answer are outdated.
             News::Restored(_, Ok(_), _) => {
                 self.forms.values_mut().for_each(|form| form.answer = None);
             }
             News::Called(tool, answer, _) => {
                 if let Some(form) = self.forms.get_mut(tool) {
                     if answer.is_ok() && tool.runs_code() {
-                        // It is mended and run again.
+                        // The user can correct the call and send it again.
                         form.stop_typing();
                     } else if answer.is_ok() {
                         form.reset(look.company);
-                        // What was sent is done with; keys are those of the list again.
+                        // A sent form returns the focus to the list.
                         if form.spec.kind.acts() {
                             self.focus = ToolsPane::List;
                         }
@@ -274,7 +273,8 @@ impl ScreenState for Tools {
     }
 }
 
-/// An answer as people are shown it: estimates as ranges, with the day they are of; means of projects with the least applied.
+/// Returns an answer as users see it: estimates as ranges with their day, and the minimum for means of
+/// projects.
 fn for_people(answer: &Answer, company: &Company) -> Value {
     let told = plain_numbers(answer.to_json());
     match answer {
@@ -308,7 +308,7 @@ impl Paned for Tools {
     fn focus_on(&mut self, name: ToolsPane) {
         self.focus = name;
         if name == ToolsPane::List {
-            // What was typed stays a draft; the form is not typed into any more when one comes back.
+            // The text stays a draft, but typing does not continue when the focus returns.
             self.forms.values_mut().for_each(Form::stop_typing);
         }
     }
@@ -319,7 +319,7 @@ impl Paned for Tools {
             ToolsPane::Form if narrow => 0,
             _ if narrow => 34,
             _ if area.width < 112 => 32,
-            // The longest name, its code, and what is between them.
+            // The longest name, its code and the gap.
             _ => 37,
         };
         let [left, right] = Layout::horizontal([Constraint::Length(list), Constraint::Min(0)]).areas(area);

@@ -1,4 +1,4 @@
-//! What stands below the values of a form, and what advertising brought so far.
+//! Text below the values of a form, and advertising results so far.
 
 use std::collections::BTreeMap;
 
@@ -11,20 +11,19 @@ use super::sheet::Block;
 use crate::action::Action;
 use crate::context::Look;
 use novamind_base::notation::{dollars, grouped};
+use novamind_database::{Rows, number_at, text_at};
 use novamind_report::plan_margins::Sales;
 use novamind_report::research::outlook_lines;
 use novamind_report::review::terms_line;
-use novamind_database::{Rows, number_at, text_at};
 use novamind_tools::{ArgumentKind, Key};
 use novamind_tui::text::{count, number, wrapped};
 use novamind_tui::theme::Role;
 
-/// Leads and spend of the last four weeks by channel and group, as ad_channel_leads counts them.
+/// Leads and spend of the last four weeks by channel and group, from `ad_channel_leads`.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Leads(BTreeMap<(String, String), (f64, f64)>);
 
 impl Leads {
-    /// Reads them.
     pub fn read(rows: &Rows) -> Leads {
         let own = |row: &Vec<novamind_database::Cell>| {
             let pair = (text_at(row, 0).to_owned(), text_at(row, 1).to_owned());
@@ -33,12 +32,12 @@ impl Leads {
         Leads(rows.rows.iter().map(own).collect())
     }
 
-    /// Whether they belong beside a block.
+    /// Returns whether a block shows them.
     pub fn is_of(&self, block: &Block) -> bool {
         matches!(block.argument.kind, ArgumentKind::Matrix(Key::Channel, Key::Group, _))
     }
 
-    /// The groups in which a channel brings most for the money, the best first: `S1 298 · S3 71`.
+    /// Returns the groups with the most leads per dollar in a channel, best first: `S1 298 · S3 71`.
     pub fn best(&self, channel: &str) -> Option<String> {
         let mut rates: Vec<(&str, f64)> = self
             .0
@@ -52,7 +51,7 @@ impl Leads {
         (!best.is_empty()).then(|| best.join(" · "))
     }
 
-    /// What one pair brought, in a sentence.
+    /// Describes the results of one channel and group.
     pub fn of(&self, channel: &str, group: &str) -> Option<String> {
         let (leads, spend) =
             self.0.get(&(channel.to_owned(), group.to_owned())).filter(|(_, spend)| *spend > 0.0)?;
@@ -69,33 +68,32 @@ fn rate_in_words(rate: f64) -> String {
     grouped(rate, if rate < 10.0 { 1 } else { 0 })
 }
 
-/// How much stands below the values.
+/// Amount of text below the values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Detail {
     /// Everything, with blank rows.
     Usual,
-    /// Nothing twice, and no blank rows.
+    /// No repeated text and no blank rows.
     Dense,
-    /// The same, with the margins of the models that are set alone.
+    /// Dense, with margins of the set model tiers only.
     Brief,
 }
 
-/// What stands below the values.
 pub(super) struct OutcomeLines {
-    /// The lines.
     pub lines: Vec<(String, Role)>,
-    /// The first of them, with every row of the margins, or the spread of an R&D project; 0 where the tool has none.
+    /// Number of leading lines up to the last row of margins, or of the project's range; 0 for other tools.
     pub needed: usize,
 }
 
 impl OutcomeLines {
-    /// Whether a row of the margins is wider than there is room.
+    /// Returns whether a row of the margins is too wide.
     pub fn is_cut(&self, width: usize) -> bool {
         self.lines.iter().take(self.needed).any(|(line, _)| line.chars().count() > width)
     }
 }
 
-/// What stands below the values: what the call would do, the call itself, the effect, what helps, the answer.
+/// Returns the text below the values: check of the call, the call, its effect, reference figures, and the
+/// answer.
 pub(super) fn outcome_lines(
     form: &Form,
     leads: &Leads,
@@ -123,7 +121,7 @@ pub(super) fn outcome_lines(
         Some(Err(refusal)) => paragraph(&format!("! {}", refusal.message), Role::Bad),
         None => {}
     }
-    // What code said is worth more room than the code once more.
+    // The answer of code needs the room more than the code itself.
     let answer = form.answer.as_ref().filter(|_| !form.sheet.is_changed() || form.spec.id.runs_code());
     let is_said = answer.is_some() && form.spec.id.runs_code();
     if !dense && !is_said && (form.sheet.is_changed() || !form.spec.kind.acts()) {
@@ -135,16 +133,18 @@ pub(super) fn outcome_lines(
     if let Some(answer) = answer {
         answer_lines(answer, &mut paragraph);
     }
-    let spread = form.preview.as_ref().is_some_and(|preview| preview.as_ref().is_ok_and(|own| own.research.is_some()));
+    let spread =
+        form.preview.as_ref().is_some_and(|preview| preview.as_ref().is_ok_and(|own| own.research.is_some()));
     let mut needed = if spread { lines.len() } else { 0 };
-    let tables = [margins(form, sales, look.company, detail == Detail::Brief), reference(form.spec.id, look.company)];
+    let tables =
+        [margins(form, sales, look.company, detail == Detail::Brief), reference(form.spec.id, look.company)];
     for (number, table) in tables.iter().enumerate().filter(|(_, table)| !table.is_empty()) {
         if !dense {
             lines.push((" ".to_owned(), Role::Text));
         }
         for (at, line) in table.iter().enumerate() {
             let role = if at == 0 { Role::Header } else { Role::Text };
-            // Rows of a table keep their blanks; sentences below it may need a second line.
+            // Table rows keep their spaces; sentences may wrap.
             let is_row = line.contains("  ") || line.chars().count() <= width;
             let parts = if is_row { vec![line.clone()] } else { wrapped(line, width) };
             lines.extend(parts.into_iter().map(|part| (part, role)));
@@ -163,7 +163,7 @@ pub(super) fn outcome_lines(
     OutcomeLines { lines, needed }
 }
 
-/// What is typed and not sent: one value as old → new, and what to do with the draft.
+/// Describes the draft: values as old → new, and the keys to send or discard it.
 fn draft_line(form: &Form, look: &Look<'_>, dense: bool) -> String {
     let changes: Vec<String> = form
         .sheet
@@ -195,7 +195,7 @@ fn answer_lines(answer: &Result<Value, novamind_tools::Refusal>, paragraph: &mut
         Ok(value) => {
             paragraph("✓ answered", Role::Good);
             if let (Some(said), Some(remarks)) = (value["stdout"].as_str(), value["stderr"].as_str()) {
-                // What a script says has lines of its own.
+                // Keep the line breaks of a script's output.
                 said.lines().for_each(|line| paragraph(line, Role::Text));
                 return remarks.lines().for_each(|line| paragraph(line, Role::Dim));
             }
@@ -213,7 +213,7 @@ fn answer_lines(answer: &Result<Value, novamind_tools::Refusal>, paragraph: &mut
     }
 }
 
-/// An answer as indented lines: flat objects in one line each.
+/// Returns an answer as indented lines, with flat objects on one line.
 fn readable(value: &Value, depth: usize) -> Vec<String> {
     let indent = "  ".repeat(depth + 1);
     let flat = |value: &Value| !matches!(value, Value::Object(_) | Value::Array(_));

@@ -1,16 +1,16 @@
-//! What helps to fill a form: prices of tiers, projects on offer, budgets in force.
+//! Reference figures for a form: tier prices, available projects, current budgets.
 
 use indexmap::IndexMap;
 use unicode_width::UnicodeWidthStr;
 
-use novamind_worker::company::Company;
 use novamind_base::notation::{cents, dollars, grouped};
 use novamind_report::research::{mean_days, mean_gain};
 use novamind_session::ResearchMeans;
 use novamind_tools::{ResearchTierFacts, ToolId};
 use novamind_tui::text::number;
+use novamind_worker::company::Company;
 
-/// Lines beside a form, the first one a head; empty where nothing helps.
+/// Returns the lines next to a form, heading first; empty for tools without reference figures.
 pub fn reference(tool: ToolId, company: &Company) -> Vec<String> {
     match tool {
         ToolId::SetModelTiers | ToolId::SetUsageQuotas => models(company),
@@ -22,7 +22,7 @@ pub fn reference(tool: ToolId, company: &Company) -> Vec<String> {
     }
 }
 
-/// Tiers in the order of their numbers.
+/// Returns the tiers by number.
 fn tiers<T>(costs: &IndexMap<u8, T>) -> Vec<(u8, &T)> {
     let mut tiers: Vec<(u8, &T)> = costs.iter().map(|(tier, facts)| (*tier, facts)).collect();
     tiers.sort_by_key(|(tier, _)| *tier);
@@ -86,7 +86,8 @@ fn threads(company: &Company) -> Vec<String> {
     if company.seen.waiting.is_empty() {
         return Vec::new();
     }
-    let mut lines = vec!["customer  group   seats  thread            asks         days left  company".to_owned()];
+    let mut lines =
+        vec!["customer  group   seats  thread            asks         days left  enterprise".to_owned()];
     lines.extend(company.seen.waiting.iter().map(|thread| {
         let asks = thread.asked.map_or("–".to_owned(), cents);
         format!(

@@ -1,25 +1,25 @@
-//! The values of a form: one block per argument, made from the catalogue, with drafts over what holds.
+//! The values of a form: one block per argument, generated from the catalog, with drafts over the current
+//! values.
 
 use std::collections::BTreeMap;
 
 use serde_json::{Map, Value};
 
-use novamind_worker::company::Company;
 use novamind_base::notation::{json_number, parse_number};
 use novamind_session::identifiers::{Channel, Plan};
 use novamind_tools::{Argument, ArgumentKind, Key, Kind, Range, Spec, ToolId};
 use novamind_tui::text::number;
 use novamind_tui::widgets::Field;
+use novamind_worker::company::Company;
 
-/// The argument that holds a program or a statement.
 const CODE: &str = "code";
 
-/// A value that can be typed.
+/// An editable value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Slot {
-    /// What holds; none where nothing is set.
+    /// Current value; `None` if nothing is set.
     pub current: Option<f64>,
-    /// What is typed over it; none while untouched.
+    /// Typed draft; `None` while unchanged.
     pub draft: Option<Field>,
 }
 
@@ -28,7 +28,6 @@ impl Slot {
         Slot { current: value.and_then(Value::as_f64), draft: None }
     }
 
-    /// Text as shown.
     pub fn text(&self) -> String {
         match (&self.draft, self.current) {
             (Some(field), _) => field.text().to_owned(),
@@ -37,10 +36,10 @@ impl Slot {
         }
     }
 
-    /// The number that would be sent: none for nothing.
+    /// Returns the number to send; `None` if empty.
     ///
     /// # Errors
-    /// What is typed is no number.
+    /// The text is not a number.
     pub fn value(&self) -> Result<Option<f64>, ()> {
         match &self.draft {
             None => Ok(self.current),
@@ -49,13 +48,12 @@ impl Slot {
         }
     }
 
-    /// Whether it differs from what holds.
+    /// Returns whether it differs from the current value.
     pub fn is_changed(&self) -> bool {
         self.value().map_or(true, |value| value.unwrap_or(0.0) != self.current.unwrap_or(0.0))
     }
 }
 
-/// A number as people type it: no grouping, no needless decimals.
 fn plain(value: f64) -> String {
     number(value).replace(',', "")
 }
@@ -63,15 +61,13 @@ fn plain(value: f64) -> String {
 /// The cells of an argument.
 #[derive(Debug, Clone)]
 pub struct Block {
-    /// The argument.
     pub argument: &'static Argument,
-    /// What it is, with the numbers in force.
+    /// Description, with the current parameters.
     pub doc: String,
-    /// Names of the rows; for a single number the argument itself.
+    /// Names of the rows; the argument itself for a single number.
     pub rows: Vec<String>,
-    /// Names of the columns; one without a name for a single number or a map.
+    /// Names of the columns; a single empty name for a number or a map.
     pub columns: Vec<String>,
-    /// Cells by row and column.
     pub slots: Vec<Vec<Slot>>,
 }
 
@@ -109,7 +105,6 @@ impl Block {
         Block { argument, doc, rows, columns, slots }
     }
 
-    /// Allowed numbers.
     pub fn range(&self) -> Range {
         match self.argument.kind {
             ArgumentKind::Number(range)
@@ -120,22 +115,20 @@ impl Block {
         }
     }
 
-    /// Whether it is a single number.
     pub fn is_scalar(&self) -> bool {
         matches!(self.argument.kind, ArgumentKind::Number(_) | ArgumentKind::Integer(_))
     }
 
-    /// Whether it is text: words, code, or a list written as JSON.
     pub fn is_text(&self) -> bool {
         matches!(self.argument.kind, ArgumentKind::Text | ArgumentKind::Structure(_) | ArgumentKind::Deals(_))
     }
 
-    /// Whether it is a program or a statement of several lines.
+    /// Returns whether it is a program or a statement with several lines.
     pub fn is_code(&self) -> bool {
         self.argument.kind == ArgumentKind::Text && self.argument.name == CODE
     }
 
-    /// What is edited in it, in words.
+    /// Returns the name of its content for key hints.
     pub fn edited(&self) -> &'static str {
         match self.argument.kind {
             _ if self.is_code() => "the code",
@@ -145,12 +138,11 @@ impl Block {
         }
     }
 
-    /// Whether rows can be added: customers are too many to list.
+    /// Returns whether rows can be added because customers are too many to list.
     pub fn is_open(&self) -> bool {
         matches!(self.argument.kind, ArgumentKind::Map(Key::Customer, _))
     }
 
-    /// Whether something differs from what holds.
     pub fn is_changed(&self) -> bool {
         match self.is_text() {
             true => !self.slots[0][0].text().trim().is_empty(),
@@ -158,17 +150,17 @@ impl Block {
         }
     }
 
-    /// Sum of what would hold, as far as it can be read.
+    /// Returns the sum of the new values that can be parsed.
     pub fn total(&self) -> f64 {
         self.slots.iter().flatten().filter_map(|slot| slot.value().ok().flatten()).sum()
     }
 
-    /// Sum of what holds.
+    /// Returns the sum of the current values.
     pub fn total_now(&self) -> f64 {
         self.slots.iter().flatten().filter_map(|slot| slot.current).sum()
     }
 
-    /// Path of a cell as refusals name it.
+    /// Returns the path of a cell, as in rejections.
     pub fn path(&self, row: usize, column: usize) -> String {
         match self.argument.kind {
             ArgumentKind::Map(..) => format!("{}.{}", self.argument.name, self.rows[row]),
@@ -179,7 +171,7 @@ impl Block {
         }
     }
 
-    /// The value of a line of text: JSON where a list or object is asked for.
+    /// Returns the value of a text line, parsed as JSON for lists and objects.
     fn text_value(&self) -> Result<Option<Value>, CellPlace> {
         let text = self.slots[0][0].text();
         match self.argument.kind {
@@ -189,16 +181,12 @@ impl Block {
         }
     }
 
-    /// What a cell takes, for whoever typed something else.
+    /// Returns the error text for invalid input.
     pub fn expected(&self) -> &'static str {
-        if self.is_text() {
-            "a list or object written as JSON is expected here"
-        } else {
-            "a number is expected here"
-        }
+        if self.is_text() { "enter a list or object as JSON" } else { "enter a number" }
     }
 
-    /// The value that would be sent.
+    /// Returns the value to send.
     fn value(&self) -> Result<Option<Value>, CellPlace> {
         let number = |row: usize, column: usize| {
             self.slots[row][column].value().map_err(|()| CellPlace { block: 0, row, column })
@@ -233,28 +221,23 @@ impl Block {
     }
 }
 
-/// A cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct CellPlace {
-    /// Block.
     pub block: usize,
-    /// Row in the block.
     pub row: usize,
-    /// Column in the block.
     pub column: usize,
 }
 
 /// All blocks of a tool.
 #[derive(Debug, Clone)]
 pub struct Sheet {
-    /// The tool.
     pub spec: &'static Spec,
-    /// One per argument; tools with a screen or dialog of their own have only those made of numbers.
+    /// One block per argument. Tools with a separate screen or dialog have blocks for numbers only.
     pub blocks: Vec<Block>,
 }
 
 impl Sheet {
-    /// The sheet of a tool over what holds now.
+    /// Returns the sheet of a tool with the current values.
     pub fn of(spec: &'static Spec, company: &Company) -> Sheet {
         let nothing = Map::new();
         let current = company.settings.get(&spec.id).unwrap_or(&nothing);
@@ -265,7 +248,7 @@ impl Sheet {
         Sheet { spec, blocks: blocks.filter(|block| !elsewhere(block)).collect() }
     }
 
-    /// The same over what holds now, with the drafts that still differ.
+    /// Returns the sheet with updated values, and the drafts that still differ.
     pub fn renewed(&self, company: &Company) -> Sheet {
         let mut sheet = Sheet::of(self.spec, company);
         for (block, old) in sheet.blocks.iter_mut().zip(&self.blocks) {
@@ -289,7 +272,7 @@ impl Sheet {
         sheet
     }
 
-    /// Types arguments into their cells; cells they do not name stay as they are.
+    /// Fills in arguments; other cells keep their values.
     pub fn fill(&mut self, arguments: &Value) {
         let places: Vec<CellPlace> = self.places().collect();
         for place in places {
@@ -303,7 +286,7 @@ impl Sheet {
         }
     }
 
-    /// What is typed into its cells, by their paths.
+    /// Returns the drafts by path.
     pub fn typed(&self) -> BTreeMap<String, String> {
         let typed = |place: CellPlace| {
             let draft = self.slot(place)?.draft.as_ref()?;
@@ -312,7 +295,7 @@ impl Sheet {
         self.places().filter_map(typed).collect()
     }
 
-    /// Types it in again; rows that were added for customers come back.
+    /// Restores drafts, including rows that were added for customers.
     pub fn retype(&mut self, values: &BTreeMap<String, String>) {
         for block in 0..self.blocks.len() {
             if self.blocks[block].is_open() {
@@ -331,15 +314,14 @@ impl Sheet {
         }
     }
 
-    /// Whether something differs from what holds.
     pub fn is_changed(&self) -> bool {
         self.blocks.iter().any(Block::is_changed)
     }
 
-    /// Arguments of the call: what is required, and what differs.
+    /// Returns the arguments of the call: required ones, and changed ones.
     ///
     /// # Errors
-    /// The first cell that is no number, or no JSON where that is asked for.
+    /// The first cell with invalid input.
     pub fn arguments(&self) -> Result<Value, CellPlace> {
         let mut arguments = Map::new();
         for (at, block) in self.blocks.iter().enumerate() {
@@ -353,12 +335,12 @@ impl Sheet {
         Ok(Value::Object(arguments))
     }
 
-    /// The cell that a refusal names.
+    /// Returns the cell that a rejection names.
     pub fn place_of(&self, path: &str) -> Option<CellPlace> {
         self.places().find(|place| self.blocks[place.block].path(place.row, place.column) == path)
     }
 
-    /// The first cell whose path has this name in it.
+    /// Returns the first cell with this name in its path.
     pub fn place_for(&self, name: &str) -> Option<CellPlace> {
         let is_for = |place: &CellPlace| {
             self.blocks[place.block].path(place.row, place.column).split('.').any(|own| own == name)
@@ -366,25 +348,23 @@ impl Sheet {
         self.places().find(is_for)
     }
 
-    /// All cells in reading order.
     pub fn places(&self) -> impl Iterator<Item = CellPlace> + '_ {
         self.blocks.iter().enumerate().flat_map(|(block, own)| {
-            (0..own.rows.len())
-                .flat_map(move |row| (0..own.columns.len()).map(move |column| CellPlace { block, row, column }))
+            (0..own.rows.len()).flat_map(move |row| {
+                (0..own.columns.len()).map(move |column| CellPlace { block, row, column })
+            })
         })
     }
 
-    /// A cell.
     pub fn slot(&self, place: CellPlace) -> Option<&Slot> {
         self.blocks.get(place.block)?.slots.get(place.row)?.get(place.column)
     }
 
-    /// A cell, to change it.
     pub fn slot_mut(&mut self, place: CellPlace) -> Option<&mut Slot> {
         self.blocks.get_mut(place.block)?.slots.get_mut(place.row)?.get_mut(place.column)
     }
 
-    /// Adds a row for a customer; false if the text is no customer number.
+    /// Adds a row for a customer; returns false if the text is not a customer number.
     pub fn add_customer(&mut self, block: usize, text: &str) -> bool {
         let Some(number) =
             text.trim().trim_start_matches('#').parse::<u32>().ok().filter(|number| *number > 0)
@@ -431,7 +411,7 @@ mod tests {
     #[test]
     fn a_matrix_is_sent_whole_without_its_zeros() {
         let mut ads = sheet("set_targeted_ad_spend");
-        assert_eq!(ads.arguments(), Ok(json!({"targeted_spend": {}})), "it is required");
+        assert_eq!(ads.arguments(), Ok(json!({"targeted_spend": {}})), "the argument is required");
         fill(&mut ads, "targeted_spend.linkedin.E1", "200");
         fill(&mut ads, "targeted_spend.search_ads.S3", "0");
         assert_eq!(ads.arguments(), Ok(json!({"targeted_spend": {"linkedin": {"E1": 200}}})));
@@ -462,7 +442,7 @@ mod tests {
         fill(&mut deals, "deals", "[[7, ");
         assert_eq!(deals.arguments(), Err(CellPlace::default()));
         assert!(deals.blocks[0].expected().contains("JSON"));
-        // What has a screen of its own is not typed here.
+        // Tools with a separate screen have no cells.
         assert!(sheet("query").blocks.is_empty() && sheet("next_week").blocks.is_empty());
     }
 

@@ -5,13 +5,13 @@ use crate::action::Scope;
 use crate::keys::Keys;
 use crate::screens::Screen;
 use crate::test_kit::{act, company, drawn, on_screen, played, shown, sweep};
-use novamind_session::identifiers::Plan;
 use novamind_record::trajectory::record::Via;
+use novamind_session::identifiers::Plan;
 use novamind_tools::{Refusal, ToolId};
 use novamind_tui::chord::Chord;
 use novamind_worker::request::Request;
 
-/// Types into the form of a tool; words are keys, the rest is typed letter by letter.
+/// Types into the form of a tool. Named keys are pressed, other strings are typed.
 fn typed(tool: ToolId, keys: &[&str]) -> (Tools, Vec<Effect>) {
     let (company, bindings) = (company(), Keys::shipped());
     let look = Look { company: &company, keys: &bindings, page: 10 };
@@ -36,13 +36,16 @@ fn typed(tool: ToolId, keys: &[&str]) -> (Tools, Vec<Effect>) {
 fn enter_edits_a_cell_and_arrows_go_on_in_the_next() {
     let (_, effects) =
         typed(ToolId::SetPrices, &["enter", "1", "2", "down", "2", "5", "down", "5", "5", "ctrl-s"]);
-    let Some(Effect::Request(Request::Call { tool, arguments })) = effects.first() else { panic!("{effects:?}") };
+    let Some(Effect::Request(Request::Call { tool, arguments })) = effects.first() else {
+        panic!("{effects:?}")
+    };
     assert_eq!((*tool, arguments), (ToolId::SetPrices, &json!({"A": 12, "B": 25, "C": 55})));
 }
 
 #[test]
 fn down_in_the_last_row_goes_on_typing_there() {
-    let (tools, _) = typed(ToolId::SetPrices, &["enter", "1", "2", "down", "2", "5", "down", "5", "down", "5"]);
+    let (tools, _) =
+        typed(ToolId::SetPrices, &["enter", "1", "2", "down", "2", "5", "down", "5", "down", "5"]);
     let form = tools.seen_form().expect("a form");
     assert!(form.is_typing());
     assert_eq!(form.sheet.arguments(), Ok(json!({"A": 12, "B": 25, "C": 55})));
@@ -56,7 +59,7 @@ fn a_second_reset_brings_the_draft_back() {
     assert!(matches!(&said[..], [Effect::Say(text)] if text.starts_with("2 values discarded")), "{said:?}");
     let (tools, said) = typed(ToolId::SetPrices, &[&keys[..], &["r"]].concat());
     assert_eq!(tools.seen_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12, "B": 25})));
-    assert!(matches!(said.last(), Some(Effect::Say(text)) if text == "2 values brought back"), "{said:?}");
+    assert!(matches!(said.last(), Some(Effect::Say(text)) if text == "2 values restored"), "{said:?}");
     let (_, said) = typed(ToolId::SetPrices, &["r"]);
     assert!(matches!(&said[..], [Effect::Complain(_)]), "{said:?}");
 }
@@ -83,11 +86,11 @@ fn tab_leaves_the_last_cell_as_it_was_typed_and_a_form_opens_at_its_first() {
 fn leaving_the_form_ends_typing_and_keeps_what_was_typed() {
     let (mut tools, _) = typed(ToolId::SetPrices, &["enter", "1", "2", "down", "backspace"]);
     assert!(tools.seen_form().is_some_and(Form::is_typing));
-    // A click on the list, while a number is emptied in the form.
+    // A click on the list while a number is empty in the form.
     tools.focus_on(ToolsPane::List);
     let form = tools.seen_form().expect("a form");
-    assert!(!form.is_typing(), "enter would end typing instead of beginning it");
-    assert_eq!(form.sheet.arguments(), Ok(json!({"A": 12})), "an emptied number is none");
+    assert!(!form.is_typing(), "enter must start typing, not end it");
+    assert_eq!(form.sheet.arguments(), Ok(json!({"A": 12})), "a cleared number is not sent");
     let (mut tools, _) = typed(ToolId::SetPrices, &["enter", "1", "2"]);
     tools.focus_on(ToolsPane::List);
     assert_eq!(tools.typed_arguments(), Some(json!({"A": 12})));
@@ -98,7 +101,7 @@ fn a_digit_begins_a_number_and_letters_type_nothing() {
     let (tools, _) = typed(ToolId::SetPrices, &["9", "5", "enter", "2"]);
     assert_eq!(tools.seen_form().expect("a form").sheet.arguments(), Ok(json!({"A": 95, "B": 2})));
     let (tools, _) = typed(ToolId::SetPrices, &["9", "5", "esc"]);
-    assert!(!tools.seen_form().expect("a form").sheet.is_changed(), "esc brings back what was there");
+    assert!(!tools.seen_form().expect("a form").sheet.is_changed(), "esc restores the previous value");
     let (tools, _) = typed(ToolId::SetTargetedAdSpend, &["v", "t"]);
     let form = tools.seen_form().expect("a form");
     assert!(!form.is_typing() && !form.sheet.is_changed(), "{:?}", form.sheet.arguments());
@@ -136,13 +139,13 @@ fn after_a_call_the_keys_are_those_of_the_list_again() {
     let look = Look { company: &company, keys: &keys, page: 10 };
     let refused = Refusal::at("A", "price_not_positive", "no");
     tools.hear(&News::Called(ToolId::SetPrices, Err(refused), company.clone().into()), &look);
-    assert_eq!(tools.focus, ToolsPane::Form, "a refused call is mended where it was typed");
+    assert_eq!(tools.focus, ToolsPane::Form, "a rejected call keeps the focus in its form");
     let set = played(0).call("set_prices", &json!({"A": 12}), Via::Form).expect("a price");
     tools.hear(&News::Called(ToolId::SetPrices, Ok(set.into()), company.clone().into()), &look);
     assert_eq!((tools.focus, tools.scopes()), (ToolsPane::List, vec![Scope::List]));
     assert!(tools.seen_form().expect("a form").answer.is_some());
     tools.hear(&News::Restored("undone", Ok(Vec::new()), company.clone().into()), &look);
-    assert!(tools.seen_form().expect("a form").answer.is_none(), "what was answered holds no longer");
+    assert!(tools.seen_form().expect("a form").answer.is_none(), "an undo invalidates the answer");
 }
 
 #[test]
@@ -158,11 +161,14 @@ fn deals_are_typed_as_json_and_asked_about_before_they_go_out() {
     assert!(tools.holds_unsent_text());
     let (_, effects) = typed(ToolId::SendEnterpriseDeal, &["enter", "[", "7", "enter", "ctrl-s"]);
     assert!(
-        matches!(&effects[..], [Effect::Complain(text)] if text.starts_with("deals: a list")),
+        matches!(&effects[..], [Effect::Complain(text)] if text.starts_with("deals: enter a list")),
         "{effects:?}"
     );
     let (_, effects) = typed(ToolId::RejectEnterpriseDeal, &["ctrl-s"]);
-    assert!(matches!(&effects[..], [Effect::Request(Request::Call { .. })]), "the tool says what is missing: {effects:?}");
+    assert!(
+        matches!(&effects[..], [Effect::Request(Request::Call { .. })]),
+        "the tool names the missing argument: {effects:?}"
+    );
 }
 
 #[test]
@@ -173,7 +179,7 @@ fn escape_brings_back_what_was_there() {
 
 #[test]
 fn the_same_value_goes_down_a_column() {
-    // Of the cell with the focus, or of the one that enter has just left.
+    // The value of the focused cell, or of the cell that enter has just left.
     for keys in [&["right", "enter", "4", "0", "enter", "up", "="][..], &["right", "4", "0", "enter", "="]] {
         let (tools, _) = typed(ToolId::SetTargetedAdSpend, keys);
         let arguments = tools.seen_form().expect("a form").sheet.arguments().expect("numbers");
@@ -188,9 +194,9 @@ fn the_same_value_goes_down_a_column() {
 #[test]
 fn a_form_without_changes_is_not_sent_and_a_wrong_cell_is_named() {
     let (_, effects) = typed(ToolId::SetPrices, &["ctrl-s"]);
-    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("nothing has changed")));
+    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("Nothing has changed")));
     let (_, effects) = typed(ToolId::SetPrices, &["enter", "1", "-", "ctrl-s"]);
-    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.starts_with("A: a number")));
+    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.starts_with("A: enter a number")));
 }
 
 #[test]
@@ -218,7 +224,7 @@ fn a_draft_shows_old_and_new_and_is_offered_again_after_esc() {
             None => tools.key(&chord.event(), &look),
         };
     }
-    assert_eq!(tools.focus, ToolsPane::List, "esc has left the form");
+    assert_eq!(tools.focus, ToolsPane::List, "esc leaves the form");
     for (width, height) in [(120, 37), (200, 57)] {
         let text = drawn(&tools, &company, width, height);
         for words in [
@@ -226,7 +232,7 @@ fn a_draft_shows_old_and_new_and_is_offered_again_after_esc() {
             " *set_prices",
             "PRC",
             "* draft, kept until sent or reset: A 12 → 14",
-            "Acts from day 15.",
+            "Takes effect on day 15.",
         ] {
             assert!(text.contains(words), "{words} in\n{text}");
         }
@@ -376,8 +382,11 @@ fn columns_of_projects_stand_apart() {
 #[test]
 fn a_small_window_shows_every_value_and_the_margin_of_every_plan() {
     let (_, company, mut screen) = on_screen::<Tools>(6);
-    let sold: Vec<&str> =
-        Plan::ALL.into_iter().filter(|plan| screen.sales.of_plan(*plan).usage().is_some()).map(Plan::id).collect();
+    let sold: Vec<&str> = Plan::ALL
+        .into_iter()
+        .filter(|plan| screen.sales.of_plan(*plan).usage().is_some())
+        .map(Plan::id)
+        .collect();
     assert!(sold.len() >= 2, "{sold:?}");
     for tool in [ToolId::SetPrices, ToolId::SetModelTiers, ToolId::SetUsageQuotas] {
         for draft in [json!({}), json!({"A": 4, "B": 3, "C": 5})] {
@@ -385,7 +394,8 @@ fn a_small_window_shows_every_value_and_the_margin_of_every_plan() {
             screen.focus_on(ToolsPane::Form);
             for (width, height) in [(60, 13), (80, 21), (120, 37), (200, 57)] {
                 let text = drawn(&screen, &company, width, height);
-                let holds = |words: &[&str]| text.lines().any(|line| words.iter().all(|word| line.contains(word)));
+                let holds =
+                    |words: &[&str]| text.lines().any(|line| words.iter().all(|word| line.contains(word)));
                 let at = format!("{tool} {draft} at {width}x{height} in\n{text}");
                 for plan in ["A", "B", "C"] {
                     let now = novamind_tui::text::number(company.setting(tool, plan));
@@ -409,13 +419,13 @@ fn code_is_written_in_lines_and_pasted_as_it_is() {
     let (_, effects) = typed(ToolId::PythonExec, &[&keys[..], &["ctrl-s"]].concat());
     let [Effect::Request(Request::Call { arguments, .. })] = &effects[..] else { panic!("{effects:?}") };
     assert_eq!(arguments["code"], "# p\nx");
-    // Left and come back to, it holds what was written; the form shows how many lines there are.
+    // Reopened, the form has the code and shows its number of lines.
     let (mut tools, _) = typed(ToolId::PythonExec, &[&keys[..], &["esc"]].concat());
     let (company, bindings) = (company(), Keys::shipped());
     let text = drawn(&tools, &company, 80, 21);
     assert!(text.contains("# p … 2 lines"), "{text}");
     let look = Look { company: &company, keys: &bindings, page: 10 };
-    // What it said stands below it, and goes when the code is changed.
+    // The output is shown below the code until the code changes.
     let said = json!({"returncode": 0, "stdout": "first\nsecond\n", "stderr": ""});
     tools.forms.get_mut(&ToolId::PythonExec).expect("a form").answer = Some(Ok(said));
     let text = drawn(&tools, &company, 80, 21);

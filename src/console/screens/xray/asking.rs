@@ -1,16 +1,16 @@
-//! Questions one after the other: what is asked while another is answered, and what became of it.
+//! Queue of questions: one is answered at a time, and results are stored.
 
 use super::{Seen, Xray};
 use crate::effect::Effect;
-use novamind_worker::look_inside::{BreakpointWork, LookFound, LookQuestion};
 use novamind_tools::Refusal;
+use novamind_worker::look_inside::{BreakpointWork, LookFound, LookQuestion};
 
 impl Xray {
     pub(super) fn send(&mut self, question: LookQuestion) -> Vec<Effect> {
         vec![Effect::Ask(self.asked.ask(question))]
     }
 
-    /// Asks at once, or after the question that is being answered. Of words that only ask, the newest replaces those before.
+    /// Sends a question at once or after the current one. A new read-only command replaces waiting ones.
     pub(super) fn send_in_turn(&mut self, question: LookQuestion) -> Vec<Effect> {
         if !self.asked.is_waiting() {
             return self.send(question);
@@ -20,12 +20,11 @@ impl Xray {
         Vec::new()
     }
 
-    /// Has something done with breakpoints.
+    /// Queues a change of breakpoints.
     pub(super) fn work(&mut self, work: BreakpointWork) -> Vec<Effect> {
         self.send_in_turn(LookQuestion::Breakpoints(work))
     }
 
-    /// Words that were asked and are not answered yet.
     pub(super) fn words_asked(&self) -> Option<&str> {
         self.waiting.iter().rev().chain(self.asked.question()).find_map(|question| match question {
             LookQuestion::Words(words, _) => Some(words.as_str()),
@@ -42,7 +41,7 @@ impl Xray {
         }
     }
 
-    /// Keeps what was answered; true if it is what the view shows.
+    /// Stores an answer; returns true if the current view shows it.
     fn keep(&mut self, mut question: LookQuestion, found: Result<LookFound, Refusal>) -> bool {
         let found = found.map_err(|refusal| refusal.message);
         if let LookQuestion::Words(_, asked) = &question {
@@ -53,7 +52,7 @@ impl Xray {
             return false;
         }
         if let LookQuestion::Breakpoints(work) = &mut question {
-            // What was done is shown like the list, and not done again.
+            // Show the result like the list, and do not repeat the change.
             *work = BreakpointWork::List;
             if let Ok(found) = &found {
                 self.breakpoints = found.breakpoints.clone();
@@ -68,7 +67,7 @@ impl Xray {
     }
 }
 
-/// Whether nothing is changed by a question.
+/// Returns whether a question changes nothing.
 fn only_asks(question: &LookQuestion) -> bool {
     match question {
         LookQuestion::Words(_, asked) => !asked.changes_run(),

@@ -1,4 +1,4 @@
-//! Spills between groups as a heat map: marks and signs say what colours say.
+//! Spillover between groups as a heat map. Glyphs and signs repeat what colors show.
 
 use std::ops::Range;
 
@@ -9,15 +9,14 @@ use novamind_report::xray::{HEAT, SpillCell, SpillMap, SpillRow};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 
-/// Columns of a cell with its number.
+/// Width of a cell with its number.
 const WIDE: usize = 13;
-/// Columns of a cell that is a mark and a sign.
+/// Width of a cell with a glyph and a sign.
 const NARROW: usize = 5;
-/// Columns of the group at the left.
 const NAME: usize = 6;
 
-/// The rows of a map in a width. Numbers stand in the cells where there is room, and below the map otherwise; columns that
-/// have no room go on in another block.
+/// Returns the rows of a map in a given width. Numbers are in the cells if they fit, otherwise below the map.
+/// Columns that do not fit continue in another block.
 pub fn rows(map: &SpillMap, width: usize) -> Vec<Row> {
     let plain = |text: &str, role| wrapped(text, width).into_iter().map(move |part| vec![(part, role)]);
     let mut rows: Vec<Row> = plain(&map.heading, Role::Header).collect();
@@ -45,7 +44,8 @@ pub fn rows(map: &SpillMap, width: usize) -> Vec<Row> {
 }
 
 const OWN: &str = "own change";
-const LEGEND: &str = "░ ▒ ▓ █ share of the largest spill · + raises, - lowers · x dropped · a dot: no weight";
+const LEGEND: &str =
+    "░ ▒ ▓ █ share of the largest spillover · + raises, - lowers · x dropped · dot: no weight";
 
 fn row_of(row: &SpillRow, block: Range<usize>, own: usize, is_wide: bool) -> Row {
     let mut pieces =
@@ -71,7 +71,7 @@ fn role_of(change: f64) -> Role {
     if change < 0.0 { Role::Bad } else { Role::Good }
 }
 
-/// The numbers of a row: `  S1→ S2 +0.000120, S3 -0.000002`; none where nobody heard of it.
+/// Returns the numbers of a row: `  S1→ S2 +0.000120, S3 -0.000002`; `None` if no group received a spillover.
 fn numbers(row: &SpillRow, map: &SpillMap) -> Option<String> {
     let heard = row.cells.iter().zip(&map.targets).filter_map(|(cell, to)| match cell {
         SpillCell::Heard(change, _) => Some(format!("{to} {change:+.6}")),
@@ -98,15 +98,22 @@ mod tests {
             own: "+0.001000 dropped".to_owned(),
             cells: (0..targets).map(cell).collect(),
         };
-        SpillMap { heading: "changes".to_owned(), targets: groups, rows: vec![row], notes: vec!["note".to_owned()] }
+        SpillMap {
+            heading: "changes".to_owned(),
+            targets: groups,
+            rows: vec![row],
+            notes: vec!["note".to_owned()],
+        }
     }
 
     #[test]
     fn every_spill_stands_in_a_map_of_any_width_as_a_mark_and_a_number() {
         for (targets, width) in [(4, 120), (4, 40), (12, 120), (12, 60), (26, 30), (1, 1)] {
             let map = map(targets);
-            let rows: Vec<String> =
-                rows(&map, width).iter().map(|row| row.iter().map(|(text, _)| text.as_str()).collect()).collect();
+            let rows: Vec<String> = rows(&map, width)
+                .iter()
+                .map(|row| row.iter().map(|(text, _)| text.as_str()).collect())
+                .collect();
             let text = rows.join("\n");
             let heard = map.rows[0].cells.iter().filter(|cell| matches!(cell, SpillCell::Heard(..))).count();
             let words: String = text.split_whitespace().collect();

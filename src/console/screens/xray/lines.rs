@@ -1,4 +1,4 @@
-//! What was seen, row by row: words broken into the width, figures of days beside them, and spills as a heat map.
+//! Draws results: wrapped text, sparklines of daily figures, and spillover as a heat map.
 
 use unicode_width::UnicodeWidthStr;
 
@@ -7,28 +7,28 @@ use super::{Xray, heat};
 use crate::action::Action;
 use crate::context::Look;
 use crate::screens::panes::Seat;
-use ratatui::layout::Rect;
 use novamind_base::notation::capital;
+use novamind_insight::LeadFactor;
 use novamind_report::xray::line_of_factor;
 use novamind_session::REFUSED_LOOK;
-use novamind_insight::LeadFactor;
 use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::spark;
 use novamind_worker::look_inside::{LookCurve, LookFound};
+use ratatui::layout::Rect;
 
-/// A row: pieces of text one after the other.
 pub type Row = Vec<(String, Role)>;
 
-/// Days that a figure is drawn for at most.
 const DAYS: usize = 28;
 
-/// The words that are shown, broken into the width, with the cursor on a factor of the leads.
+/// Draws the wrapped result, with the cursor on a factor of the leads.
 pub fn draw(xray: &Xray, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
     let width = usize::from(seat.area.width);
     let rows = match shown(xray, look) {
-        Content::Sentence(text, role) => wrapped(&text, width).into_iter().map(|part| vec![(part, role)]).collect(),
+        Content::Sentence(text, role) => {
+            wrapped(&text, width).into_iter().map(|part| vec![(part, role)]).collect()
+        }
         Content::Found(LookFound { map: Some(map), .. }) => heat::rows(map, width),
         Content::Found(found) => {
             let marked = (xray.view() == View::Leads && !found.curves.is_empty())
@@ -51,7 +51,7 @@ pub fn draw(xray: &Xray, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
     }
 }
 
-/// The rows of words, each figure of days behind its line, or below it where there is no room.
+/// Returns the wrapped rows, with sparklines after their lines, or below them if they do not fit.
 fn rows_of_words(found: &LookFound, marked: Option<usize>, focused: bool, width: usize) -> Vec<Row> {
     let mut rows = Vec::new();
     for (at, line) in found.lines.iter().enumerate() {
@@ -76,17 +76,14 @@ fn rows_of_words(found: &LookFound, marked: Option<usize>, focused: bool, width:
     rows
 }
 
-/// Days are drawn as fine as the words beside them are: what these call the same is level.
+/// Rounds values to the precision of the text, so that equal texts have equal bars.
 fn spark_of(curve: &LookCurve) -> String {
     let shown: Vec<f64> = curve.days.iter().map(|value| (value * 1e4).round() / 1e4).collect();
     spark(&shown, DAYS)
 }
 
-/// What stands there.
 enum Content<'a> {
-    /// A sentence.
     Sentence(String, Role),
-    /// What was found.
     Found(&'a LookFound),
 }
 
@@ -105,36 +102,35 @@ fn shown<'a>(xray: &'a Xray, look: &Look<'_>) -> Content<'a> {
     match seen.map(|seen| &seen.found) {
         Some(Ok(found)) => Content::Found(found),
         Some(Err(problem)) => sentence(problem, Role::Bad),
-        None if wanted.is_some() => sentence("simulating days again …", Role::Dim),
-        None if is_of_words && xray.words_asked().is_some() => sentence("simulating days again …", Role::Dim),
+        None if wanted.is_some() => sentence("re-simulating …", Role::Dim),
+        None if is_of_words && xray.words_asked().is_some() => sentence("re-simulating …", Role::Dim),
         None if is_of_words => {
             let text = format!(
-                "{} types words as plain mode takes them, for instance find churn(S1) > 5% over 7, who cash 84, diff 83 84, \
+                "Press {} and type a plain-mode command, for example find churn(S1) > 5% over 7, who cash 84, diff 83 84, \
                  or set group.S1.c_max_mean 300 from 30 in a debug run",
                 key(Action::AskWords)
             );
             Content::Sentence(text, Role::Dim)
         }
-        None if xray.last_day == 0 => sentence("no day has run yet", Role::Dim),
+        None if xray.last_day == 0 => sentence("No day has been simulated yet.", Role::Dim),
         None if xray.view() == View::Customer => {
             let text = format!(
-                "{} types the number of a customer, and a day or none: without one the last day that has run, or its departure",
+                "Press {} and type a customer number, optionally with a day. The default is the last day, or the day of cancellation.",
                 key(Action::TypeChoice)
             );
             Content::Sentence(text, Role::Dim)
         }
-        None => sentence("nothing is chosen", Role::Dim),
+        None => sentence("Nothing is selected.", Role::Dim),
     }
 }
 
-/// Columns by which what goes on in the next row is set back.
+/// Indentation of continued rows.
 const SET_BACK: usize = 6;
 
-/// What stands between two columns of a table at least.
 const GAP: &str = "  ";
 
-/// A line in rows of a width. Rows of tables keep the blanks that line up their columns, so that those that fit stand below
-/// each other; the cells that do not go on in the next row.
+/// Wraps a line. Table rows keep the spaces that align their columns; cells that do not fit continue in the
+/// next row.
 fn broken_into(line: &str, width: usize) -> Vec<String> {
     if line.width() <= width || !line.trim_start().contains(GAP) {
         return wrapped(line, width);

@@ -1,7 +1,7 @@
-//! Hidden state of a run, where it may be shown: the views of plain mode in the same words, day by day, and breakpoints.
+//! The x-ray of a run, if it is permitted: the views of plain mode by day, and breakpoints.
 //!
-//! The session's thread simulates days again for a look. One question is asked at a time; of those that come up meanwhile
-//! only the newest is asked next. What was confirmed, or is done with breakpoints, waits its turn.
+//! The session's worker thread re-simulates days for an inspection. One question is answered at a time. Of
+//! read-only questions only the newest waits; confirmed changes and breakpoint commands are queued.
 
 mod asking;
 mod heat;
@@ -19,14 +19,14 @@ use strum::VariantArray;
 
 use self::typing::{Expected, Typed, TypedLine};
 use self::view::{Choices, View};
-use super::panes::{Pane, Paned, draw_pane};
-use crate::context::Look;
 use super::ScreenState;
+use super::panes::{Pane, Paned, draw_pane};
 use crate::action::Action;
+use crate::context::Look;
 use crate::effect::Effect;
+use novamind_insight::{Breakpoint, DrawnPart, LeadFactor};
 use novamind_report::xray::AskedWords;
 use novamind_session::identifiers::Group;
-use novamind_insight::{Breakpoint, DrawnPart, LeadFactor};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::scroll::Scroll;
@@ -37,60 +37,55 @@ use novamind_worker::look_inside::{BreakpointWork, LookFound, LookQuestion};
 use novamind_worker::message::DaysRan;
 use novamind_worker::request::Request;
 
-/// Its panes, in the order of the tab key.
+/// Panes in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
 pub enum XrayPane {
-    /// What can be looked at.
+    /// List of views.
     #[default]
     Views,
-    /// The groups, the parts or the breakpoints of the view.
+    /// Groups, components or breakpoints of the view.
     Choices,
-    /// What was seen.
+    /// The result.
     Seen,
 }
 
-/// Narrowest window in which the lists stay beside what was seen while that has the focus.
+/// Minimum width at which the lists stay visible next to the focused result.
 const WIDE: u16 = 90;
-/// Columns of the lists.
 const LISTS: u16 = 16;
-/// Lowest window in which both lists stand below each other.
+/// Minimum height at which both lists are stacked.
 const HIGH: u16 = 20;
 
-/// What a look has brought.
 struct Seen {
     question: LookQuestion,
     found: Result<LookFound, String>,
 }
 
-/// The screen.
+/// The x-ray screen.
 #[derive(Default)]
 pub struct Xray {
     focus: XrayPane,
-    /// Hidden state may be shown.
+    /// Whether the run permits the x-ray.
     is_open: bool,
     views: Table,
     groups: Table,
     parts: Table,
     set: Table,
     breakpoints: Vec<Breakpoint>,
-    /// The last day that has run.
     last_day: u32,
-    /// The day that is looked at; none for the last one.
+    /// The selected day; `None` for the last one.
     day: Option<u32>,
     customer: Option<u32>,
-    /// Factors of the leads that are held, and at what.
+    /// Factors of the leads with fixed values.
     held: Vec<(LeadFactor, f64)>,
-    /// The factor under the cursor.
+    /// Index of the factor at the cursor.
     factor: usize,
     typing: Option<TypedLine>,
-    /// What is wrong with what was typed.
     problem: Option<String>,
-    /// The question that is being answered.
     asked: Pending<LookQuestion>,
-    /// What was typed or done meanwhile, in the order in which it is asked next.
+    /// Typed questions that wait, in order.
     waiting: VecDeque<LookQuestion>,
     seen: Option<Seen>,
-    /// What was answered to words.
+    /// The answer to the last command.
     said: Option<Seen>,
     scroll: Scroll,
 }
@@ -130,7 +125,8 @@ impl Xray {
         }
     }
 
-    /// The question whose answer is to be shown; none where something has to be chosen first, or no day has run.
+    /// Returns the question for the current view; `None` if a selection is missing or no day has been
+    /// simulated.
     fn wanted(&self) -> Option<LookQuestion> {
         let day = self.day();
         let needs_day = !matches!(self.view(), View::Breakpoints | View::Words);
@@ -148,18 +144,18 @@ impl Xray {
             View::Streams => LookQuestion::Draws(self.part()?, self.last_day),
             View::Customer => LookQuestion::Customer(self.customer?, day),
             View::Breakpoints => LookQuestion::Breakpoints(BreakpointWork::List),
-            // What was asked is asked once: words may set something.
+            // Commands are sent once, because they may change the run.
             View::Words => return None,
         })
     }
 
-    /// The day of what is seen: that of a customer who left ends with its last day as a subscriber.
+    /// Returns the day of the result. For a former customer it is at most the last day as a subscriber.
     fn day_seen(&self) -> u32 {
         let seen = self.seen.as_ref().filter(|seen| self.wanted().as_ref() == Some(&seen.question));
         seen.and_then(|seen| seen.found.as_ref().ok()?.day).unwrap_or_else(|| self.day())
     }
 
-    /// Asks for what is to be shown and is not yet, unless a question is being answered.
+    /// Sends the question for the current view if its answer is missing and no other is being answered.
     fn ask(&mut self) -> Vec<Effect> {
         let wanted = self.wanted();
         let is_known = wanted.as_ref() == self.seen.as_ref().map(|seen| &seen.question);
@@ -169,14 +165,14 @@ impl Xray {
         }
     }
 
-    /// Shows why days stopped that were run from here.
+    /// Shows why a run of days stopped.
     pub fn tell(&mut self, ran: &DaysRan) {
         let question = LookQuestion::Breakpoints(BreakpointWork::List);
         let lines = ran.lines.clone();
         self.seen = Some(Seen { question, found: Ok(LookFound { lines, ..LookFound::default() }) });
     }
 
-    /// Turns to the breakpoints.
+    /// Opens the breakpoints view.
     pub fn show_breakpoints(&mut self) {
         self.show(View::Breakpoints);
         if self.is_open {
@@ -190,18 +186,17 @@ impl Xray {
         self.begin_view();
     }
 
-    /// What belonged to the view before goes with it.
     fn begin_view(&mut self) {
         (self.scroll, self.typing, self.problem) = (Scroll::default(), None, None);
     }
 
     fn list_views(&mut self) {
         if self.views.rows().is_empty() {
-            self.views = Table::new(vec![Column::words("look at")]);
+            self.views = Table::new(vec![Column::words("view")]);
             self.views.set_rows(View::VARIANTS.iter().map(|view| vec![Cell::words(view.title())]).collect());
-            self.parts = Table::new(vec![Column::words("draws")]);
+            self.parts = Table::new(vec![Column::words("component")]);
             self.parts.set_rows(DrawnPart::ALL.iter().map(|part| vec![Cell::words(part.id())]).collect());
-            self.set = Table::new(vec![Column::words("stops when")]);
+            self.set = Table::new(vec![Column::words("stop when")]);
             self.groups = Table::new(vec![Column::words("id"), Column::words("")]);
         }
     }
@@ -229,7 +224,7 @@ impl Xray {
         self.ask()
     }
 
-    /// Turns to a day; the last one is followed.
+    /// Selects a day; the last day follows the run.
     fn turn_to(&mut self, day: Option<u32>) {
         self.day = day.filter(|day| *day != self.last_day);
     }
@@ -237,13 +232,13 @@ impl Xray {
     fn seek(&mut self) -> Vec<Effect> {
         match self.view().has_day() {
             true => self.type_in(Some(Expected::Day)),
-            false => vec![Effect::Complain("this view does not show a day that is chosen".to_owned())],
+            false => vec![Effect::Complain("This view does not depend on the day".to_owned())],
         }
     }
 
     fn hold(&mut self) -> Vec<Effect> {
         if self.view() != View::Leads {
-            return vec![Effect::Complain("only factors of the leads are held".to_owned())];
+            return vec![Effect::Complain("Only factors of the leads can be fixed".to_owned())];
         }
         let factor = LeadFactor::ALL[self.factor.min(LeadFactor::ALL.len() - 1)];
         match self.held.iter().position(|(own, _)| *own == factor) {
@@ -255,7 +250,7 @@ impl Xray {
 
     fn type_in(&mut self, expected: Option<Expected>) -> Vec<Effect> {
         let Some(expected) = expected else {
-            return vec![Effect::Complain("nothing is chosen in this view".to_owned())];
+            return vec![Effect::Complain("This view has nothing to choose".to_owned())];
         };
         (self.focus, self.problem) = (XrayPane::Seen, None);
         self.typing = Some(TypedLine { expected, field: Field::default() });
@@ -296,7 +291,7 @@ impl Xray {
         self.ask()
     }
 
-    /// Asks with words; those that set something are confirmed first.
+    /// Sends a command; commands that change the run need confirmation.
     fn say_words(&mut self, words: String, asked: AskedWords) -> Vec<Effect> {
         match asked.changes_run() {
             true => vec![Effect::ConfirmWords(words)],
@@ -309,7 +304,7 @@ impl Xray {
         self.send_in_turn(LookQuestion::Words(words, asked))
     }
 
-    /// Sends words that were confirmed.
+    /// Sends a confirmed command.
     pub fn send_words(&mut self, words: &str) -> Vec<Effect> {
         match AskedWords::read(words) {
             Ok(asked) if self.is_open => self.send_asked(words.to_owned(), asked),
@@ -317,7 +312,6 @@ impl Xray {
         }
     }
 
-    /// What the keys of the breakpoints do.
     fn act_on_breakpoints(&mut self, action: Action) -> Vec<Effect> {
         if self.view() != View::Breakpoints {
             self.show(View::Breakpoints);
@@ -325,12 +319,12 @@ impl Xray {
         match action {
             Action::RunDays => self.type_in(Some(Expected::Days)),
             Action::LookBack if self.breakpoints.is_empty() => {
-                vec![Effect::Complain("no breakpoint is set".to_owned())]
+                vec![Effect::Complain("No breakpoint is set".to_owned())]
             }
             Action::LookBack => self.work(BreakpointWork::LookBack),
             _ => match self.set.selected().and_then(|row| self.breakpoints.get(row)) {
                 Some(own) => self.work(BreakpointWork::Remove(own.number)),
-                None => vec![Effect::Complain("no breakpoint is set".to_owned())],
+                None => vec![Effect::Complain("No breakpoint is set".to_owned())],
             },
         }
     }
@@ -422,7 +416,7 @@ impl Paned for Xray {
         if lists == 0 {
             return;
         }
-        // Where there is no room for both, the list with the focus stands.
+        // If both do not fit, only the focused list is drawn.
         let views = View::VARIANTS.len() as u16 + 3;
         let upper = match (self.focus, area.height >= HIGH && self.choices().is_some()) {
             (_, true) => views,

@@ -1,4 +1,4 @@
-//! The panes of the X-ray: the views, what is chosen in one, and what was seen.
+//! Panes of the x-ray: views, choices and results.
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
@@ -7,9 +7,9 @@ use super::typing::Expected;
 use super::view::{Choices, View};
 use super::{Xray, XrayPane, lines};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::context::{Figure, Look};
 use novamind_base::notation::capital;
 use novamind_insight::LeadFactor;
 use novamind_tui::canvas::{Canvas, rows_of};
@@ -17,13 +17,11 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::Table;
 use novamind_worker::look_inside::LookQuestion;
 
-/// What can be looked at.
 pub struct ViewsPane;
 
-/// The groups, the parts or the breakpoints of the view.
+/// Groups, components or breakpoints of the view.
 pub struct ChoicesPane;
 
-/// What was seen.
 pub struct SeenPane;
 
 fn scopes_of_list(table: Option<&Table>) -> Vec<Scope> {
@@ -33,7 +31,6 @@ fn scopes_of_list(table: Option<&Table>) -> Vec<Scope> {
     }
 }
 
-/// Keys of a view.
 fn keys_of(view: View) -> &'static [Action] {
     match view {
         View::Leads => &[
@@ -248,7 +245,7 @@ impl Pane<Xray> for SeenPane {
             _ => String::new(),
         };
         let note = match (xray.asked.is_waiting(), view.has_day()) {
-            (true, _) => "simulating days again …".to_owned(),
+            (true, _) => "re-simulating …".to_owned(),
             (false, true) => format!("day {} of {}", xray.day_seen(), xray.last_day),
             (false, false) => format!("after day {}", xray.last_day),
         };

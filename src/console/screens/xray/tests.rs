@@ -6,8 +6,8 @@ use crate::test_kit::{act, asked, company, drawn, on_screen, played, settings, s
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
-use novamind_tools::Refusal;
 use novamind_session::{NewRun, Session, Storage};
+use novamind_tools::Refusal;
 use novamind_worker::queries::{QueriedTables, Query};
 
 fn open(company: Company) -> Company {
@@ -42,14 +42,14 @@ fn one_question_is_asked_at_a_time_and_the_newest_next() {
     let mut screen: Xray = shown(&mut session, &company);
     assert_eq!(day_asked(&screen.ask()), Some(14));
     for _ in 0..3 {
-        assert!(act(&mut screen, Action::Left, &company).is_empty(), "one is being answered");
+        assert!(act(&mut screen, Action::Left, &company).is_empty(), "a question is being answered");
     }
-    assert!(drawn(&screen, &company, 80, 21).contains("simulating days again …"));
+    assert!(drawn(&screen, &company, 80, 21).contains("re-simulating …"));
     assert_eq!(day_asked(&hear(&mut screen, &company, found("of day 14"))), Some(11));
     assert!(hear(&mut screen, &company, found("of day 11")).is_empty());
     let text = drawn(&screen, &company, 80, 21);
     assert!(text.contains("of day 11") && !text.contains("of day 14"), "{text}");
-    // What is known is not asked again, and an answer that nobody waits for is dropped.
+    // A known answer is not requested again, and an unexpected answer is ignored.
     assert!(screen.ask().is_empty());
     assert!(hear(&mut screen, &company, found("of another run")).is_empty());
     assert!(!drawn(&screen, &company, 80, 21).contains("another run"));
@@ -72,7 +72,7 @@ fn days_are_walked_between_the_first_and_the_last() {
         act(&mut screen, action, &company);
         assert_eq!(screen.day(), day, "{action:?}");
     }
-    assert_eq!(screen.day, None, "the last day is followed");
+    assert_eq!(screen.day, None, "the selection follows the last day");
 }
 
 #[test]
@@ -89,10 +89,10 @@ fn words_that_are_typed_meanwhile_are_asked_next_and_what_was_confirmed_is_not_d
     act(&mut screen, Action::AskWords, &company);
     for words in ["who cash", "set group.S1.c_max_mean 300", "diff 6 7", "find leads >= 1"] {
         let (words, asked) = read(words);
-        assert!(screen.send_asked(words, asked).is_empty(), "one is being answered");
+        assert!(screen.send_asked(words, asked).is_empty(), "a question is being answered");
     }
     let text = drawn(&screen, &company, 80, 21);
-    assert!(text.contains("find leads >= 1") && text.contains("simulating days again"), "{text}");
+    assert!(text.contains("find leads >= 1") && text.contains("re-simulating"), "{text}");
     let next = hear(&mut screen, &company, found("of day 14"));
     assert_eq!(asked(&next), "set group.S1.c_max_mean 300");
     let next = hear(&mut screen, &company, found("set"));
@@ -123,7 +123,7 @@ fn a_day_is_typed_with_a_group_or_a_customer_or_alone_and_has_to_be_there() {
     assert_eq!(day, 9);
     let (asked, ..) = typed(View::Customer, Action::TypeChoice, "7 12");
     assert!(matches!(asked, Some(LookQuestion::Customer(7, 12))));
-    // Without a day it is asked as plain mode asks: about the last one.
+    // Without a day the question is for the last day, as in plain mode.
     let (asked, ..) = typed(View::Customer, Action::TypeChoice, "8");
     assert!(matches!(asked, Some(LookQuestion::Customer(8, 14))));
     let (asked, ..) = typed(View::Drift, Action::TypeChoice, "3");
@@ -162,7 +162,7 @@ fn what_is_typed_is_read_or_said_to_be_wrong() {
     for (expected, text, part) in [
         (Group, "S99", "there is no group S99"),
         (Part, "servise", "did you mean service?"),
-        (Customer, "-4", "the number of a customer"),
+        (Customer, "-4", "a customer number"),
         (Days, "0", "a number of days"),
         (Condition, "churn >", ""),
     ] {
@@ -196,10 +196,10 @@ fn before_the_first_day_nothing_is_asked() {
     let keys = Keys::shipped();
     screen.renew(&Look { company: &company, keys: &keys, page: 5 });
     assert!(screen.ask().is_empty());
-    assert!(drawn(&screen, &company, 80, 21).contains("no day has run yet"));
+    assert!(drawn(&screen, &company, 80, 21).contains("No day has been simulated yet"));
 }
 
-/// Effects that no screen would give: hidden state stays hidden all the same, and nothing is recorded or set.
+/// Requests that bypass the screen must not reveal, record or change hidden state.
 #[test]
 fn requests_that_go_around_the_screen_are_refused() {
     for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {

@@ -1,70 +1,67 @@
-//! What is typed on the X-ray screen: a group or the number of a customer with a day or none, a day, a part, a condition, a
-//! number, words.
+//! Input of the x-ray screen: groups and customers with an optional day, days, components, conditions,
+//! numbers, commands.
 
 use super::view::{Choices, View};
 use novamind_base::nearest;
+use novamind_insight::{Condition, ConditionProblem, DrawnPart, LeadFactor};
 use novamind_report::xray::AskedWords;
 use novamind_session::identifiers::Group;
-use novamind_insight::{Condition, ConditionProblem, DrawnPart, LeadFactor};
 use novamind_tui::widgets::Field;
 
-/// What is expected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Expected {
-    /// A group, and a day or none.
+    /// A group with an optional day.
     Group,
-    /// A part of the world that draws.
+    /// A component with random draws.
     Part,
-    /// The number of a customer, and a day or none.
+    /// A customer number with an optional day.
     Customer,
-    /// A day.
     Day,
-    /// The condition of a breakpoint.
     Condition,
-    /// A number of days.
     Days,
-    /// The value at which a factor of the leads is held.
+    /// The fixed value of a factor of the leads.
     Held(LeadFactor),
-    /// Words that ask, or set a parameter.
+    /// A command that inspects, or sets a parameter.
     Words,
 }
 
-/// What was typed.
+/// Parsed input.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Typed {
-    /// A group, and the day on which it is looked at, if one was typed.
+    /// A group, with the day if one was typed.
     Group(Group, Option<u32>),
-    /// A part of the world that draws.
+    /// A component with random draws.
     Part(DrawnPart),
-    /// The number of a customer, and the day on which it is looked at, if one was typed.
+    /// A customer number, with the day if one was typed.
     Customer(u32, Option<u32>),
-    /// A day.
     Day(u32),
-    /// The condition of a breakpoint.
     Condition(Condition),
     /// A number of days, at least 1.
     Days(u32),
-    /// A factor, and the value at which it is held.
+    /// A factor and its fixed value.
     Held(LeadFactor, f64),
-    /// Words, as they were typed and read.
+    /// A command as text and parsed.
     Words(String, AskedWords),
 }
 
-/// A line that is being typed.
 #[derive(Debug)]
 pub struct TypedLine {
-    /// What is expected.
     pub expected: Expected,
-    /// The line.
     pub field: Field,
 }
 
-/// What stands before the value of a factor, in the order of the equation.
-const HELD: [&str; LeadFactor::ALL.len()] =
-    ["R held at (1)", "D held at (1)", "C held at (1)", "M held at (1)", "A held at (1)", "Z held at (1)"];
+/// Prompts for the value of a factor, in the order of the equation.
+const HELD: [&str; LeadFactor::ALL.len()] = [
+    "R fixed at (1)",
+    "D fixed at (1)",
+    "C fixed at (1)",
+    "M fixed at (1)",
+    "A fixed at (1)",
+    "Z fixed at (1)",
+];
 
 impl Expected {
-    /// What can be typed in a view; none where there is nothing to choose.
+    /// Returns the kind of input of a view; `None` if it has nothing to choose.
     pub fn in_view(view: View) -> Option<Expected> {
         match (view, view.choices()) {
             (View::Customer, _) => Some(Expected::Customer),
@@ -77,11 +74,10 @@ impl Expected {
         }
     }
 
-    /// What stands before the line.
     pub fn prompt(self) -> &'static str {
         match self {
             Expected::Group => "group [day]",
-            Expected::Part => "part",
+            Expected::Part => "component",
             Expected::Customer => "customer [day]",
             Expected::Day => "day",
             Expected::Condition => "stop when",
@@ -91,10 +87,10 @@ impl Expected {
         }
     }
 
-    /// Reads a line.
+    /// Parses a line.
     ///
     /// # Errors
-    /// What is expected, or what was meant perhaps.
+    /// The expected input, with a suggestion if one is similar.
     pub fn read(self, text: &str) -> Result<Typed, String> {
         let text = text.trim();
         match self {
@@ -108,12 +104,12 @@ impl Expected {
             Expected::Part => {
                 let ids = || DrawnPart::ALL.into_iter().map(DrawnPart::id);
                 let found = DrawnPart::parse(&text.to_ascii_lowercase());
-                found.map(Typed::Part).ok_or_else(|| unknown("part", text, &nearest(text, ids())))
+                found.map(Typed::Part).ok_or_else(|| unknown("component", text, &nearest(text, ids())))
             }
             Expected::Customer => {
                 let (number, day) = with_day(text)?;
                 let customer = number.parse().map(|customer| Typed::Customer(customer, day));
-                customer.map_err(|_| "type the number of a customer, for instance 4711".to_owned())
+                customer.map_err(|_| "type a customer number, for example 4711".to_owned())
             }
             Expected::Day => day_of(text).map(Typed::Day),
             Expected::Condition => text.parse().map(Typed::Condition).map_err(problem_in_words),
@@ -122,7 +118,7 @@ impl Expected {
                 text => {
                     let value = text.parse().ok().filter(|value: &f64| value.is_finite() && *value >= 0.0);
                     let value = value.map(|value| Typed::Held(factor, value));
-                    value.ok_or_else(|| format!("{factor} is held at a number of at least 0"))
+                    value.ok_or_else(|| format!("{factor} needs a number of at least 0"))
                 }
             },
             Expected::Words => {
@@ -131,24 +127,24 @@ impl Expected {
             }
             Expected::Days => {
                 let days = text.parse().ok().filter(|days| *days > 0);
-                days.map(Typed::Days).ok_or_else(|| "type a number of days, for instance 28".to_owned())
+                days.map(Typed::Days).ok_or_else(|| "type a number of days, for example 28".to_owned())
             }
         }
     }
 }
 
 impl Typed {
-    /// The same, if its day has run.
+    /// Checks that the day has been simulated.
     ///
     /// # Errors
-    /// Which days there are.
+    /// The range of simulated days.
     pub fn within(self, last_day: u32) -> Result<Typed, String> {
         match self {
             Typed::Group(_, Some(day)) | Typed::Customer(_, Some(day)) | Typed::Day(day)
                 if !(1..=last_day).contains(&day) =>
             {
                 Err(match last_day {
-                    0 => "no day has run yet".to_owned(),
+                    0 => "no day has been simulated yet".to_owned(),
                     last => format!("there is no day {day}; choose a day from 1 to {last}"),
                 })
             }
@@ -157,7 +153,7 @@ impl Typed {
     }
 }
 
-/// The first word, and the day behind it, if there is one.
+/// Returns the first word, and the day after it, if there is one.
 fn with_day(text: &str) -> Result<(&str, Option<u32>), String> {
     match text.split_once(char::is_whitespace) {
         Some((first, day)) => Ok((first, Some(day_of(day.trim())?))),
@@ -166,7 +162,7 @@ fn with_day(text: &str) -> Result<(&str, Option<u32>), String> {
 }
 
 fn day_of(text: &str) -> Result<u32, String> {
-    text.parse().map_err(|_| "a day is a whole number, for instance 84".to_owned())
+    text.parse().map_err(|_| "a day is a whole number, for example 84".to_owned())
 }
 
 fn problem_in_words(problem: ConditionProblem) -> String {

@@ -1,67 +1,58 @@
-//! The views of the X-ray, and what is chosen in each.
+//! Views of the x-ray and their choices.
 
 use strum::VariantArray;
 
-/// What is looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
 pub enum View {
     /// The equation of a group's leads.
     #[default]
     Leads,
-    /// What is delivered to a group.
+    /// Delivered quality of a group.
     Quality,
-    /// What moved the satisfaction of a group.
+    /// Causes of a group's satisfaction.
     Satisfaction,
-    /// What moved the reputation of a group.
+    /// Causes of a group's reputation.
     Reputation,
-    /// How reputation spilled over.
+    /// Spillover of reputation.
     Spillover,
-    /// Rivals.
     Rivals,
-    /// Drift.
     Drift,
-    /// The next draws of a part.
+    /// Next random draws of a component.
     Streams,
-    /// A customer from within.
+    /// Hidden state of a customer.
     Customer,
-    /// Breakpoints.
     Breakpoints,
-    /// Words as plain mode takes them.
+    /// Plain-mode commands.
     Words,
 }
 
-/// What a view has to choose from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Choices {
-    /// The customer groups.
     Groups,
-    /// Parts of the world that draw.
+    /// Components with random draws.
     Parts,
-    /// The breakpoints that are set.
     Breakpoints,
-    /// Nothing: it shows the whole market, or what is typed.
+    /// None: the view shows the whole market, or typed commands.
     Nothing,
 }
 
 impl View {
-    /// Its name in the list.
     pub fn title(self) -> &'static str {
         match self {
             View::Leads => "leads",
             View::Quality => "quality",
             View::Satisfaction => "satisfaction",
             View::Reputation => "reputation",
-            View::Spillover => "spill-over",
-            View::Rivals => "rivals",
+            View::Spillover => "spillover",
+            View::Rivals => "competitors",
             View::Drift => "drift",
             View::Streams => "streams",
             View::Customer => "customer",
             View::Breakpoints => "breakpoints",
-            View::Words => "words",
+            View::Words => "commands",
         }
     }
 
-    /// What is chosen in it.
     pub fn choices(self) -> Choices {
         match self {
             View::Leads | View::Quality | View::Satisfaction | View::Reputation => Choices::Groups,
@@ -71,12 +62,11 @@ impl View {
         }
     }
 
-    /// Whether it shows one day; the others show what comes next, or what is set.
+    /// Returns whether it shows one day. The others show future values or settings.
     pub fn has_day(self) -> bool {
         !matches!(self, View::Streams | View::Breakpoints | View::Words)
     }
 
-    /// The entry of the glossary that explains it.
     pub fn term(self) -> &'static str {
         match self {
             View::Breakpoints => "breakpoint",
@@ -86,11 +76,10 @@ impl View {
 }
 
 impl Choices {
-    /// Title of the list of them.
     pub fn title(self) -> &'static str {
         match self {
             Choices::Groups => "Group",
-            Choices::Parts => "Part",
+            Choices::Parts => "Component",
             Choices::Breakpoints => "Set",
             Choices::Nothing => "",
         }

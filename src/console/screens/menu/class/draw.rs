@@ -1,4 +1,4 @@
-//! The panes of a class.
+//! Panes of a class.
 
 use ratatui::layout::Rect;
 
@@ -16,13 +16,12 @@ use novamind_tui::widgets::chart::{Axis, Line, Plot, Side, Sign, zero_if_near};
 use novamind_tui::widgets::scale::Unit;
 use novamind_tui::widgets::table::first_row;
 
-/// Columns of the ranking, in small and in wide windows.
+/// Width of the ranking in small and in wide windows.
 const RANKING: (u16, u16) = (29, 52);
-/// Width from which tries, hints and pitfalls stand in the ranking.
+/// Minimum width for tries, hints and pitfalls.
 const WIDE: u16 = 110;
-/// Rows from which guesses and pitfalls have places of their own.
+/// Minimum height for separate guesses and pitfalls.
 const HIGH: u16 = 34;
-/// What stands at the point of the lit student.
 const LIT: &str = "◆";
 
 impl ClassPage {
@@ -68,13 +67,13 @@ impl ClassPage {
         let inside = canvas.pane(area, "Ranking", &note, true);
         let is_wide = area.width == RANKING.1;
         let mut rows = rows_of(inside);
-        let score = if view.lesson.is_some() { "of good" } else { "cash" };
+        let score = if view.lesson.is_some() { "of ref." } else { "cash" };
         if let Some(row) = rows.next() {
             draw_cells(canvas, row, ["", "student", score, "goals", "tries", "hints"], is_wide, Role::Header);
         }
         let lit = self.lit(ranking);
         let measure = wrapped(&format!("by {}", view.measure()), inside.width as usize);
-        // What it is ranked by stands below, where the list leaves room for all of it.
+        // The measure of the ranking is shown below if the list leaves enough rows.
         let room = inside.height.saturating_sub(1);
         let for_measure = (measure.len() as u16 + 1).min(room.saturating_sub(ranking.len() as u16));
         let for_measure = if for_measure > measure.len() as u16 { for_measure } else { 0 };
@@ -103,7 +102,7 @@ impl ClassPage {
         }
         if ranking.is_empty() {
             let row = Rect { y: inside.y + 1, height: room.min(1), ..inside };
-            canvas.text(row, " nobody has finished", Role::Dim);
+            canvas.text(row, " No student has finished", Role::Dim);
         }
         let below = Rect { y: inside.bottom() - for_measure, height: for_measure, ..inside };
         for (row, line) in rows_of(below).skip(1).zip(&measure) {
@@ -111,7 +110,7 @@ impl ClassPage {
         }
     }
 
-    /// What a pane says of the lit student and the part.
+    /// Returns the part title and selected student, for the note of a pane.
     fn note(&self, view: &ClassView<'_>, ranking: &[RankedStudent<'_>], sign: &str) -> String {
         let lit = self.lit(ranking).map(|at| format!("{} {sign}", ranking[at].name));
         let part = view.part_title(self.part).map(str::to_owned);
@@ -125,15 +124,17 @@ impl ClassPage {
         view: &ClassView<'_>,
         ranking: &[RankedStudent<'_>],
     ) {
-        let inside = canvas.pane(area, "Cash by day", &self.note(view, ranking, "lit"), false);
+        let inside = canvas.pane(area, "Cash by day", &self.note(view, ranking, "selected"), false);
         let all = curves(view, ranking, self.part);
         let mut lines: Vec<(u8, Line)> = all
             .iter()
             .map(|own| {
                 let line = |role| Line::through(own.points.clone(), role);
                 match own.label {
-                    None => (1, line(Role::Series(1)).named("good")),
-                    label if label == self.shown.lit.as_deref() => (2, line(Role::Series(0)).named("lit")),
+                    None => (1, line(Role::Series(1)).named("reference")),
+                    label if label == self.shown.lit.as_deref() => {
+                        (2, line(Role::Series(0)).named("selected"))
+                    }
                     Some(_) => (0, line(Role::Dim)),
                 }
             })
@@ -141,7 +142,7 @@ impl ClassPage {
         lines.sort_by_key(|(place, _)| *place);
         let lines: Vec<Line> = lines.into_iter().map(|(_, line)| line).collect();
         if lines.is_empty() {
-            return canvas.text(inside, " nobody has finished this part", Role::Dim);
+            return canvas.text(inside, " No student has finished this part", Role::Dim);
         }
         let zero = zero_if_near(lines.iter().flat_map(|line| line.points.iter().map(|point| point.1)));
         let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[0.0] };
@@ -149,7 +150,7 @@ impl ClassPage {
             .draw(canvas, inside);
     }
 
-    /// Points of all students, the lit one with a sign of its own.
+    /// Draws the points of all students, with a mark for the selected one.
     fn draw_points(
         &self,
         canvas: &mut Canvas<'_>,
@@ -180,7 +181,7 @@ impl ClassPage {
     ) {
         let found = scatter(view, ranking, self.part);
         let title = match &found {
-            Some(own) => format!("{} across, {} up", own.decision, own.figure),
+            Some(own) => format!("{} by {}", own.figure, own.decision),
             None => "Decisions".to_owned(),
         };
         let inside = canvas.pane(area, &title, &self.note(view, ranking, LIT), false);
@@ -189,7 +190,7 @@ impl ClassPage {
                 let unit = if own.figure == "cash" { Unit::Dollars } else { Unit::Number };
                 self.draw_points(canvas, inside, &own.points, (&compact, unit), None);
             }
-            None => canvas.text(inside, " nobody decided otherwise than the others", Role::Dim),
+            None => canvas.text(inside, " All students made the same decisions", Role::Dim),
         }
     }
 
@@ -204,7 +205,7 @@ impl ClassPage {
             asked(view).into_iter().filter(|own| own.part == self.part && !own.answers.is_empty()).collect();
         let inside = canvas.pane(area, "Guesses", &self.note(view, ranking, LIT), false);
         let Some(own) = all.get(self.question.min(all.len().saturating_sub(1))) else {
-            return canvas.text(inside, " nothing was guessed", Role::Dim);
+            return canvas.text(inside, " No guesses", Role::Dim);
         };
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let number = match all.len() {
@@ -224,7 +225,7 @@ impl ClassPage {
         }
     }
 
-    /// Guesses across, outcomes up; on the line a guess was right.
+    /// Draws guesses on the x axis and outcomes on the y axis.
     fn draw_numbers(&self, canvas: &mut Canvas<'_>, area: Rect, own: &AskedClass<'_>) {
         let points = own.points();
         let both = || own.answers.iter().flat_map(|answer| [answer.1, answer.2]);
@@ -232,14 +233,14 @@ impl ClassPage {
             (least.min(value), most.max(value))
         });
         let head = Rect { height: 1.min(area.height), ..area };
-        canvas.text(head, "guess across, outcome up; on the line it was right", Role::Dim);
+        canvas.text(head, "x: guess, y: outcome; points on the line were exact", Role::Dim);
         let chart = Rect { y: area.y + head.height, height: area.height - head.height, ..area };
         let diagonal = (most > least).then_some([(least, least), (most, most)]);
         self.draw_points(canvas, chart, &points, (&compact, Unit::Number), diagonal);
     }
 }
 
-/// Cells of the ranking; tries and hints in wide windows only.
+/// Draws the cells of the ranking; tries and hints only in wide windows.
 fn draw_cells(canvas: &mut Canvas<'_>, row: Rect, cells: [&str; 6], is_wide: bool, role: Role) {
     let columns: [(u16, u16, Align); 6] = [
         (0, 3, Align::Right),
@@ -255,7 +256,6 @@ fn draw_cells(canvas: &mut Canvas<'_>, row: Rect, cells: [&str; 6], is_wide: boo
     }
 }
 
-/// How many took each choice.
 fn draw_choices(canvas: &mut Canvas<'_>, area: Rect, own: &AskedClass<'_>) {
     let mut rows = rows_of(area);
     for (number, choice) in (1..).zip(own.choices) {
@@ -278,13 +278,13 @@ fn draw_choices(canvas: &mut Canvas<'_>, area: Rect, own: &AskedClass<'_>) {
     }
 }
 
-/// The pitfall that most students met, and how many met each.
+/// Draws the most common pitfall, and the number of students by pitfall.
 fn draw_pitfalls(canvas: &mut Canvas<'_>, area: Rect, view: &ClassView<'_>) {
     let met = pitfalls(view);
-    let inside = canvas.pane(area, "Pitfall met most", "", false);
+    let inside = canvas.pane(area, "Most common pitfall", "", false);
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
     let Some((most, others)) = met.split_first() else {
-        return canvas.text(inside, "nobody met one", Role::Dim);
+        return canvas.text(inside, "No pitfalls", Role::Dim);
     };
     let head = format!("{}, by {}", most.name, count(most.students as u32, "student"));
     let mut lines = vec![(head, Role::Strong)];

@@ -1,4 +1,4 @@
-//! A class that was collected: the ranking, all curves with one lit, a decision against a figure, guesses, pitfalls.
+//! Results of a class: ranking, cash curves, a decision plotted against a figure, guesses, pitfalls.
 
 mod draw;
 #[cfg(test)]
@@ -8,10 +8,9 @@ use crate::action::Action;
 use novamind_course::CollectedClass;
 use novamind_report::class::{ClassView, RankedStudent, Shown, asked, decisions, figures, ranked};
 
-/// Students of a page, to walk over.
 const PAGE: usize = 10;
 
-/// What a small window shows below the curves.
+/// Pane below the curves in a small window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Below {
     Scatter,
@@ -19,19 +18,17 @@ enum Below {
     Pitfalls,
 }
 
-/// A class on the screen.
 pub(super) struct ClassPage {
     class: CollectedClass,
     shown: Shown,
-    /// The part, counted from 1.
+    /// The part, from 1.
     part: u32,
-    /// The question whose guesses are shown, among those of the part that were answered.
+    /// Index of the shown question among the answered ones of the part.
     question: usize,
     below: Below,
 }
 
 impl ClassPage {
-    /// Shows a class; one student is lit.
     pub(super) fn new(class: CollectedClass, shown: Shown) -> ClassPage {
         let mut page = ClassPage { class, shown, part: 1, question: 0, below: Below::Scatter };
         if page.shown.lit.is_none() {
@@ -44,7 +41,7 @@ impl ClassPage {
         ClassView::of(&self.class, self.shown.clone())
     }
 
-    /// Lights a student by the place in the ranking, counted from 0; the last one if there are fewer.
+    /// Selects a student by rank, from 0; the last student if the rank is too high.
     pub(super) fn light(&mut self, place: usize) {
         let view = self.view();
         let ranking = ranked(&view);
@@ -52,14 +49,13 @@ impl ClassPage {
         self.shown.lit = lit.or(self.shown.lit.take());
     }
 
-    /// Place of the lit student in the ranking.
+    /// Returns the rank of the selected student.
     fn lit(&self, ranking: &[RankedStudent<'_>]) -> Option<usize> {
         ranking.iter().position(|student| Some(student.label) == self.shown.lit.as_deref())
     }
 
-    /// Actions worth showing.
     pub(super) fn hints(&self) -> Vec<Action> {
-        // The way out stands in the narrowest window, too.
+        // The key to close the page is visible in the narrowest window, too.
         let mut hints = vec![Action::Down, Action::ClassDecision, Action::ClassFigure, Action::HideNames];
         hints.extend([Action::Close, Action::ClassView]);
         hints.extend((self.questions() > 1).then_some(Action::ClassQuestion));
@@ -67,13 +63,12 @@ impl ClassPage {
         hints
     }
 
-    /// How many questions of the part were answered.
+    /// Returns the number of answered questions of the part.
     fn questions(&self) -> usize {
         let view = self.view();
         asked(&view).iter().filter(|own| own.part == self.part && !own.answers.is_empty()).count()
     }
 
-    /// Does an action.
     pub(super) fn act(&mut self, action: Action) {
         match action {
             Action::HideNames => self.shown.hides_names = !self.shown.hides_names,
@@ -110,7 +105,7 @@ impl ClassPage {
         self.light(place);
     }
 
-    /// The decision after the one that is plotted; the first is the one in which students differ most.
+    /// Plots the next decision, starting with the one in which students differ most.
     fn turn_decision(&mut self) {
         let all = decisions(&ranked(&self.view()), self.part);
         let now = self.shown.decision.as_ref().or(all.first());
@@ -124,7 +119,7 @@ impl ClassPage {
     }
 }
 
-/// The name after another one, the first after the last; none where there are none.
+/// Returns the next name, cyclically; `None` if there are no names.
 fn next_of(all: &[String], now: Option<&String>) -> Option<String> {
     let at = all.iter().position(|own| Some(own) == now);
     all.get(at.map_or(0, |at| (at + 1) % all.len())).cloned()

@@ -1,4 +1,4 @@
-//! A class on the screen: walked over, plotted otherwise, without names.
+//! Tests of the page of a class: selection, plots, hidden names.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,7 +10,7 @@ use novamind_course::{
     Class, ClassCollection, ClassRun, Evidence, Lesson, RunVerdict, StepEvidence, ToHandOut,
 };
 
-/// A class of a lesson whose students have set prices from 10 up; the last one has not finished.
+/// Returns a class of a lesson whose students have set prices of 10 and more; the last one has not finished.
 fn collected(students: u32) -> CollectedClass {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/three-weeks.toml");
     let lesson = Arc::new(Lesson::of_file(&path).expect("a lesson"));
@@ -89,18 +89,18 @@ fn up_and_down_light_another_student() {
     let mut page = page(12);
     let first = shown(&page, 120, 39);
     for part in
-        ["Ranking", "11 of 12", "S01 lit", "price A across, cash up", "S01 ◆", "Guesses", "Pitfall met most"]
+        ["Ranking", "11 of 12", "S01 selected", "cash by price A", "S01 ◆", "Guesses", "Most common pitfall"]
     {
         assert!(first.contains(part), "{part} is missing in\n{first}");
     }
     page.act(Action::Down);
-    assert!(shown(&page, 120, 39).contains("S02 lit"));
+    assert!(shown(&page, 120, 39).contains("S02 selected"));
     page.act(Action::Last);
-    assert!(shown(&page, 120, 39).contains("S11 lit"), "S12 has not finished");
+    assert!(shown(&page, 120, 39).contains("S11 selected"), "S12 has not finished");
     page.act(Action::Down);
-    assert!(shown(&page, 120, 39).contains("S11 lit"));
+    assert!(shown(&page, 120, 39).contains("S11 selected"));
     page.act(Action::PageUp);
-    assert!(shown(&page, 120, 39).contains("S01 lit"));
+    assert!(shown(&page, 120, 39).contains("S01 selected"));
     page.light(4);
     assert_eq!(page.shown.lit.as_deref(), Some("S05"));
 }
@@ -110,13 +110,10 @@ fn keys_choose_decision_and_figure_among_those_that_differ() {
     let mut page = page(6);
     page.act(Action::ClassDecision);
     page.act(Action::ClassFigure);
-    assert!(shown(&page, 120, 39).contains("price B across, subscribers up"));
+    assert!(shown(&page, 120, 39).contains("subscribers by price B"));
     page.act(Action::ClassDecision);
     page.act(Action::ClassFigure);
-    assert!(
-        shown(&page, 120, 39).contains("price A across, cash up"),
-        "price C and R&D are the same for all"
-    );
+    assert!(shown(&page, 120, 39).contains("cash by price A"), "price C and R&D are equal for all students");
 }
 
 #[test]
@@ -139,7 +136,7 @@ fn hidden_names_are_nowhere_on_the_screen() {
 #[test]
 fn a_small_window_shows_one_after_the_other_below_the_curves() {
     let mut page = page(12);
-    for part in ["price A across", "Guesses", "Pitfall met most", "price A across"] {
+    for part in ["cash by price A", "Guesses", "Most common pitfall", "cash by price A"] {
         let screen = shown(&page, 80, 23);
         assert!(screen.contains(part) && screen.contains("Cash by day"), "{part} is missing in\n{screen}");
         page.act(Action::ClassView);

@@ -163,7 +163,7 @@ fn rules_answer_every_thread_after_one_confirmation() {
     let rules = "'accept\u{a0}asked>=20;\u{a0}offer\u{a0}where\u{a0}group=E1:\u{a0}B\u{a0}85,C\u{a0}list*0.9;\u{a0}reject\u{a0}seats<60'";
     press(&mut screen, &company, &format!("R ctrl-n {rules}"));
     let text = drawn(&screen, &company, 120, 37);
-    for words in ["Rules", "accept asked>=20: 66 enterprises", "What 72 would get", "$20.00 → B $20.00"] {
+    for words in ["Rules", "accept asked>=20: 66 enterprises", "Preview for 72", "$20.00 → B $20.00"] {
         assert!(text.replace('\u{a0}', " ").contains(words), "{words} in\n{text}");
     }
     let (effects, _) = press(&mut screen, &company, "ctrl-s");

@@ -68,11 +68,11 @@ fn a_baseline_run_explains_but_has_no_tour() {
     console.shows("Glossary");
     console.press("/ 'word' _ 'of' _ 'mouth' enter enter");
     console.shows("see also");
-    console.shows("Network");
+    console.shows("Word of mouth");
     console.press("enter");
     console.shows("Referral");
     console.press("backspace");
-    console.shows("Network");
+    console.shows("Word of mouth");
     console.press("esc esc esc f2");
     console.shows("see also");
 }

@@ -22,7 +22,7 @@ fn a_newcomer_plays_two_weeks_leaves_and_comes_back() {
     console.shows("New run");
     console.press("n enter");
     console.shows("day 0/500");
-    console.shows("no plan has a price: nobody");
+    console.shows("no plan has a price: no one");
     open_shop(&mut console);
     console.shows("Tools ●11");
     console.press("c");

@@ -74,7 +74,7 @@ fn the_screen_says_what_plain_mode_says_and_each_look_is_a_line() {
     let group = Group::parse("S2").expect("a group");
     let days = session.inspect().lead_equations(group, Some(19)).expect("a look");
     let own = days.last().expect("a day");
-    for part in ["leads of S2 on day 19".to_owned(), format!("λ {:.2}, came {}", own.expected(), own.came)] {
+    for part in ["leads of S2 on day 19".to_owned(), format!("λ {:.2}, actual {}", own.expected(), own.came)] {
         assert!(screen.contains(&part), "{part} is missing in\n{screen}");
     }
 }
@@ -296,10 +296,10 @@ fn a_parameter_is_set_after_a_question_and_in_debug_runs_alone() {
     assert!(!console.screen().contains("= 300"), "{}", console.screen());
     ask(&mut console, "set group.S1.c_max_mean 300 from 20");
     console.press("y");
-    console.shows("from day 20 on");
+    console.shows("from day 20");
     // Changing the view and returning sends no new question.
     console.press("esc up down");
-    console.shows("from day 20 on");
+    console.shows("from day 20");
     assert_eq!(console.app.run().map(|run| run.company.seen.day), before);
     drop(console);
     let is_set = |record: &Record| matches!(record, Record::Override(_));

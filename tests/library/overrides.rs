@@ -271,8 +271,8 @@ fn bad_keys_values_and_days_are_refused_and_leave_no_trace() {
         ("capacity_tier", json!([]), None, "parameter_not_allowed", "numbered"),
         ("capacity_tier.3.capacity_units", json!(u64::MAX), None, "parameter_not_allowed", ""),
         ("run.seed", json!(1), None, "parameter_not_allowed", "acts only when a run begins"),
-        ("operations.base_outage_prob", json!(0.5), Some(7), "day_unknown", "from day 8 to 140"),
-        ("operations.base_outage_prob", json!(0.5), Some(141), "day_unknown", "from day 8 to 140"),
+        ("operations.base_outage_prob", json!(0.5), Some(7), "day_unknown", "between 8 and 140"),
+        ("operations.base_outage_prob", json!(0.5), Some(141), "day_unknown", "between 8 and 140"),
     ] {
         let refused = session.set_parameter(key, &value, from).expect_err(key);
         assert_eq!(refused.code, code, "{key}: {refused}");
@@ -315,7 +315,7 @@ fn a_line_that_sets_a_parameter_cannot_be_forged() {
     for (field, value, part) in [
         ("new", json!(0.01), "the state on day 14 is not the recorded one"),
         ("from_day", json!(12), "the state on day 14 is not the recorded one"),
-        ("from_day", json!(0), "has passed"),
+        ("from_day", json!(0), "not after day 0"),
         ("old", json!(0.5), "was not 0.5 before it"),
         ("key", json!("operations.nothing"), "no such parameter"),
         ("new", json!(null), "not valid for a parameter"),

@@ -155,7 +155,7 @@ fn an_archive_that_was_sealed_anew_is_still_read_line_by_line() {
     let mut lines = lines_of(&forged.text("trajectory.jsonl"));
     cheaper(&mut lines);
     forged.put("trajectory.jsonl", written(lines, false));
-    forged.import(&other).fails(3, &["trajectory.jsonl", "does not follow"]);
+    forged.import(&other).fails(3, &["trajectory.jsonl", "does not have the hash of the previous line"]);
 
     let mut forged = opened();
     let seed =

@@ -144,7 +144,7 @@ type Example = (&'static str, fn(&Stage));
 const IN_INSTRUCTIONS: [Example; 6] = [
     ("the probability of an outage", |stage| {
         stage.manual_says("set_daily_spend", &["probability", "solve open issues"]);
-        stage.manual_says("set_targeted_ops_spend", &["a day per dollar"]);
+        stage.manual_says("set_targeted_ops_spend", &["per day and dollar"]);
         stage.term_says("outage", &["probability"]);
         stage.term_says("operations", &["for each dollar"]);
     }),
@@ -436,7 +436,7 @@ const DOCUMENTS_TEXTS_AND_CHANCE: [Example; 4] = [
     ("tool documents with coefficients", |stage| {
         let manual = stage.data("get_tool_documentation", json!({ "tool_names": ["all"] }));
         let (support, development) = (&manual["set_targeted_ops_spend"], &manual["set_targeted_dev_spend"]);
-        has(&support.to_string(), &["0.6 a day per dollar", "0.1 for companies"]);
+        has(&support.to_string(), &["0.6 per day and dollar", "0.1 for enterprises"]);
         has(&development.to_string(), &["0.0225 ln(1 + spend / 5000)"]);
     }),
     ("posts, messages and notices", |stage| {

@@ -103,7 +103,7 @@ fn why_tells_the_causes_of_a_group_and_keeps_what_is_hidden() {
         } else {
             assert!(
                 mood.contains(
-                    "refused not_in_this_mode (figure): reputation of S1 is hidden while the run goes on"
+                    "refused not_in_this_mode (figure): reputation of S1 is hidden in unfinished runs"
                 ),
                 "{mood}"
             );

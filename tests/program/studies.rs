@@ -424,7 +424,7 @@ fn the_keys_of_a_study_seal_snapshots_and_sign_archives() {
     fs::rename(&aside, folder.join("seal.key")).expect("moved");
     let damaged = fs::read(folder.join("seal.key")).expect("a key");
     fs::write(folder.join("seal.key"), "no key").expect("written");
-    lab.0.run(&["--study", &lab.folder()]).fails(2, &["seal.key is no key of this kind"]);
+    lab.0.run(&["--study", &lab.folder()]).fails(2, &["seal.key is not a key of this kind"]);
     fs::write(folder.join("seal.key"), damaged).expect("written");
     assert_eq!(lab.visit("P01\nquit\n").code, 0);
     assert_eq!(sealed_by(), b's');

@@ -162,7 +162,7 @@ pub const DOES_NOT_FOLLOW: &str =
     "the line does not have the hash of the previous line: one of the two was changed";
 
 /// Hint for recovering the lines before a damaged one.
-pub const BRANCH_THEM: &str = ": `novamind runs rescue` creates a branch from them";
+pub const BRANCH_THEM: &str = ": `novamind runs recover` creates a branch from them";
 
 #[cfg(test)]
 mod tests {

@@ -55,7 +55,7 @@ pub(super) fn new_run(run: &Transcript) -> String {
         let mut all = Vec::new();
         collect_parameters("", &own.parameters, &mut all);
         options.extend(all.iter().map(|(key, value)| format!(" --set '{key}={value}'")));
-        options.extend(own.fault.map(|fault| format!(" --planted {}", u32::from(fault))));
+        options.extend(own.fault.map(|fault| format!(" --fault {}", u32::from(fault))));
     }
     options
 }

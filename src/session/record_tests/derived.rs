@@ -53,7 +53,7 @@ fn whatever_is_done_to_the_manifest_the_first_line_counts() {
     ];
     for (text, told) in cases {
         let remark = opened(&run.folder, text.as_deref());
-        assert!(remark.contains(told) && remark.contains("made anew"), "{told}: {remark}");
+        assert!(remark.contains(told) && remark.contains("rebuilt"), "{told}: {remark}");
         let restored: Table = std::fs::read_to_string(&path).expect("a manifest").parse().expect("TOML");
         let mut expected: Table = good.parse().expect("TOML");
         if text.is_none_or(|text| !text.contains("created")) {

@@ -165,6 +165,6 @@ fn lines_that_are_missing_are_missed() {
             }
         };
         assert!(error.contains(&format!("line {}", lines.len() + 1)), "{error}");
-        assert!(error.contains("missing") && error.contains("rescue"), "{error}");
+        assert!(error.contains("missing") && error.contains("recover"), "{error}");
     }
 }

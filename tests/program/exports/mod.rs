@@ -324,7 +324,7 @@ fn damaged_runs_are_not_exported_and_unfinished_lines_are_left_out() {
     let text = String::from_utf8(good).expect("text");
     fs::write(run.join("trajectory.jsonl"), text.replacen("\"A\":12", "\"A\":13", 1)).expect("a change");
     let (archive, said) = export(&home, &run, "bad.tar");
-    said.fails(3, &["trajectory.jsonl, line 3", "its own sum", "good"]);
+    said.fails(3, &["trajectory.jsonl, line 3", "its sum", "good"]);
     assert!(!archive.exists());
     let hidden = |entry: &PathBuf| {
         entry.file_name().is_some_and(|name| name.to_string_lossy().starts_with(".novamind"))

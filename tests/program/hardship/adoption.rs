@@ -81,7 +81,7 @@ fn a_disk_without_room_for_a_branch_keeps_the_run_and_makes_none() {
         (&Value::Bool(false), &Value::from("not_saved")),
         "{adopted}"
     );
-    assert!(adopted["error"].as_str().is_some_and(|words| words.contains("there is no branch")), "{adopted}");
+    assert!(adopted["error"].as_str().is_some_and(|words| words.contains("no branch was created")), "{adopted}");
     assert_eq!(answers.last().expect("an answer")["day"], 84, "the run continues");
     assert_eq!((unnamed(&home), listed(&home).len()), (Vec::new(), 1));
     assert_eq!(home.run(&["replay", &id(&run), "--verify"]).code, 0);

@@ -141,15 +141,15 @@ fn a_damaged_trajectory_is_refused_with_its_line_and_left_as_it_is() {
     let (id, good) = (id(&folder), bytes_of(&folder, "trajectory.jsonl"));
     assert_eq!(lines_of(&good).len(), 10);
     let cases: [(Damage, &[&str]); 9] = [
-        (|bytes| flip_after(bytes, 4, "\"B\":"), &["line 4", "its own sum", "Lines 1 to 3 are good"]),
-        (|bytes| flip_after(bytes, 1, "\"seed\":"), &["line 1", "its own sum"]),
+        (|bytes| flip_after(bytes, 4, "\"B\":"), &["line 4", "its sum", "Lines 1 to 3 are good"]),
+        (|bytes| flip_after(bytes, 1, "\"seed\":"), &["line 1", "its sum"]),
         (|bytes| flip_after(bytes, 9, "\"cash\":"), &["line 9", "changed", "Lines 1 to 8 are good"]),
-        (|bytes| flip_after(bytes, 10, "\"at\":\"202"), &["line 10", "changed", "rescue"]),
+        (|bytes| flip_after(bytes, 10, "\"at\":\"202"), &["line 10", "changed", "recover"]),
         (
             |bytes| *bytes = [lines_of(bytes)[..2].concat(), lines_of(bytes)[3..].concat()].concat(),
             &["line 3", "missing"],
         ),
-        (|bytes| *bytes = lines_of(bytes)[..6].concat(), &["line 7", "missing", "rescue"]),
+        (|bytes| *bytes = lines_of(bytes)[..6].concat(), &["line 7", "missing", "recover"]),
         (|bytes| bytes.extend(lines_of(bytes)[9].clone()), &["line 11", "Lines 1 to 10 are good"]),
         (|bytes| bytes.extend(b"\0\0\0\n"), &["line 11", "not a line of a trajectory"]),
         (Vec::clear, &["line 1", "does not begin with the start of a run"]),
@@ -179,7 +179,7 @@ fn a_changed_figure_is_found_without_the_database() {
     flip_after(&mut bytes, 9, "\"cash\":");
     fs::write(folder.join("trajectory.jsonl"), &bytes).expect("written");
     fs::remove_file(folder.join("world.db")).expect("gone");
-    home.run(&["replay", &id(&folder), "--verify"]).fails(3, &["line 9", "its own sum"]);
+    home.run(&["replay", &id(&folder), "--verify"]).fails(3, &["line 9", "its sum"]);
 }
 
 #[test]
@@ -360,15 +360,15 @@ fn a_run_in_use_is_left_to_its_owner() {
 fn the_good_beginning_of_a_damaged_run_becomes_a_branch() {
     let home = Home::new();
     let folder = home.two_weeks();
-    home.run(&["runs", "rescue", &id(&folder)]).fails(2, &["not damaged"]);
+    home.run(&["runs", "recover", &id(&folder)]).fails(2, &["not damaged"]);
     let path = folder.join("trajectory.jsonl");
     let mut bytes = fs::read(&path).expect("a trajectory");
     let second_price = bytes.windows(8).position(|part| part == b"\"C\":50.0" || part == b"{\"C\":50}");
     let at = second_price.expect("the call of the second week") + 6;
     bytes[at] ^= 0x01;
     fs::write(&path, &bytes).expect("written");
-    home.play(&["--run", &id(&folder)], "").fails(3, &["novamind runs rescue"]);
-    let rescued = home.run(&["runs", "rescue", &id(&folder)]);
+    home.play(&["--run", &id(&folder)], "").fails(3, &["novamind runs recover"]);
+    let rescued = home.run(&["runs", "recover", &id(&folder)]);
     assert_eq!(rescued.code, 0, "{}", rescued.err);
     assert!(rescued.out.contains("is on day 7"), "{}", rescued.out);
     let own = rescued.out.split_whitespace().nth(1).expect("a name").to_owned();

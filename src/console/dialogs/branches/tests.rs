@@ -44,7 +44,7 @@ fn decisions_of_the_week_and_later_are_listed_and_can_be_left_out_or_changed() {
     let mut page = page();
     for (width, height) in SIZES {
         let picture = dialog_picture(&page, &company, width, height);
-        for words in ["from week 5", "week  5  set_prices", "week  6", "refused"] {
+        for words in ["from week 5", "week  5  set_prices", "week  6", "rejected"] {
             assert!(picture.contains(words), "{words} in {picture}");
         }
         assert!(!picture.contains("week  1"), "{picture}");

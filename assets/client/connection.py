@@ -65,7 +65,7 @@ class Connection:
         try:
             answer = json.loads(text)
         except ValueError as error:
-            raise NovamindError(f"the server responded with status {status} and a body that is not valid JSON", "no_json") from error
+            raise NovamindError(f"the server responded with status {status}, but not with JSON", "no_json") from error
         if status == 401:
             said = answer.get("error") if isinstance(answer, dict) else None
             raise NovamindError(

@@ -398,8 +398,10 @@ impl Protocol {
         if self.practice.offer != PracticeOffer::None
             && of_session.into_iter().any(|seed| *seed == self.practice.seed)
         {
-            let problem =
-                format!("{} is also the seed of a session. Choose another seed for the practice", self.practice.seed);
+            let problem = format!(
+                "{} is also the seed of a session. Choose another seed for the practice",
+                self.practice.seed
+            );
             return Err(("practice.seed", problem));
         }
         let unknown = self.record.leave_out.iter().find(|kind| !Activity::KINDS.contains(&kind.as_str()));

@@ -115,12 +115,7 @@ impl fmt::Display for CollectNote {
                 write!(out, "not collected: {}: {problem}", path.display())
             }
             CollectNote::Superseded { run, path, by } => {
-                write!(
-                    out,
-                    "run {run}: {} is an earlier state or a copy of {}",
-                    path.display(),
-                    by.display()
-                )
+                write!(out, "run {run}: {} is an earlier state or a copy of {}", path.display(), by.display())
             }
             CollectNote::Conflict { run, paths, line } => {
                 let paths: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
@@ -135,11 +130,7 @@ impl fmt::Display for CollectNote {
                 write!(out, "not signed: {}", path.display())
             }
             CollectNote::NotSigned { path, by: Some(key) } => {
-                write!(
-                    out,
-                    "not signed by the lab: {} is signed with the key {key}",
-                    path.display()
-                )
+                write!(out, "not signed by the lab: {} is signed with the key {key}", path.display())
             }
             CollectNote::SharedLabel { label, runs } => {
                 write!(out, "label {label} has {} sessions: runs {}", runs.len(), runs.join(", "))

@@ -257,14 +257,19 @@ impl Questionnaire {
                 .flat_map(toml::Table::keys)
                 .find(|key| !own.contains(&key.as_str()));
             if let Some(key) = unknown {
-                let problem =
-                    format!("{}: {key} is not a key of this form; its keys are {}", question.id, own.join(", "));
+                let problem = format!(
+                    "{}: {key} is not a key of this form; its keys are {}",
+                    question.id,
+                    own.join(", ")
+                );
                 return Err(ParameterError::of_key(&source, text, key, problem));
             }
             let fits = |letter: u8| letter.is_ascii_alphanumeric() || letter == b'_';
             if question.id.is_empty() || !question.id.bytes().all(fits) {
-                let problem =
-                    format!("{:?} is not a valid name of a question: use letters, digits, underscores", question.id);
+                let problem = format!(
+                    "{:?} is not a valid name of a question: use letters, digits, underscores",
+                    question.id
+                );
                 return Err(ParameterError::of_key(&source, text, "question", problem));
             }
             if !known.insert(&question.id) {

@@ -80,7 +80,8 @@ fn a_participant_is_led_from_the_label_to_the_thanks() {
     let script = format!("P9\nP01\nwhat?\nyes\n8\n5\nset_prices A=9 B=19\n{WEEKS}4\n2\nquit\n");
     let first = lab.visit(&script);
     assert_eq!(first.code, 0, "{}", first.err);
-    for part in ["P9 is not a label of this study", "Taking part", "type a number from 1 to 7", "ok set_prices"]
+    for part in
+        ["P9 is not a label of this study", "Taking part", "type a number from 1 to 7", "ok set_prices"]
     {
         assert!(first.out.contains(part), "{part} is missing in\n{}", first.out);
     }

@@ -1,7 +1,7 @@
 //! `study.toml`: the protocol that all sessions of a study follow.
 //!
 //! A study is a folder: `study.toml`, `consent.md`, `questions/*.toml` and `assignment.csv`. The digest of the protocol is in
-//! the first line of every run, so runs of different protocols can be told apart.
+//! the first line of every run, so runs of different protocols cannot be mixed up.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -61,13 +61,13 @@ pub struct Protocol {
     /// Practice run before the session.
     #[serde(default)]
     pub practice: Practice,
-    /// What the program shows to participants.
+    /// Display settings for participants.
     #[serde(default)]
     pub session: SessionPage,
     /// Time limits.
     #[serde(default)]
     pub limits: TimeLimits,
-    /// What the record contains.
+    /// Recording settings.
     #[serde(default)]
     pub record: RecordPage,
     /// Language model that words the messages of the runs; `None` for the built-in voice.
@@ -180,7 +180,7 @@ impl Default for Practice {
     }
 }
 
-/// What the program shows to participants.
+/// Display settings for participants.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SessionPage {
@@ -208,7 +208,7 @@ impl Default for SessionPage {
     }
 }
 
-/// What the record contains.
+/// Recording settings.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RecordPage {

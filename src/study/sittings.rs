@@ -22,7 +22,7 @@ pub struct Sitting {
     pub run: String,
     /// Whether it is the practice run.
     pub practice: bool,
-    /// What the participant is doing.
+    /// State of the participant.
     pub state: SittingState,
     /// Last simulated day.
     pub day: u32,
@@ -34,7 +34,7 @@ pub struct Sitting {
     pub problems: Vec<String>,
 }
 
-/// What a participant is doing.
+/// The state of a participant in a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SittingState {

@@ -14,7 +14,7 @@ use novamind_session::lines_afterwards;
 struct HiddenView {
     seconds: f64,
     at: String,
-    /// Number of the line, from 1; `None` for a debug run, which shows hidden state from its creation on.
+    /// Number of the line, from 1; `None` for a debug run, which shows hidden state from its creation.
     line: Option<u64>,
     words: String,
 }

@@ -288,7 +288,7 @@ fn wrong_protocols_are_named_with_line_and_key() {
     let same =
         good.replace("offer = \"none\"", "offer = \"optional\"").replace("seed = 1_618", "seed = 2_718");
     fs::write(lab.0.0.path().join("pilot/study.toml"), same).expect("written");
-    lab.0.run(&["study", "check", &lab.folder()]).fails(3, &["practice.seed", "needs its own"]);
+    lab.0.run(&["study", "check", &lab.folder()]).fails(3, &["practice.seed", "also the seed of a session"]);
     fs::write(lab.0.0.path().join("pilot/study.toml"), &good).expect("written");
     let checked = lab.0.run(&["study", "check", &lab.folder()]);
     assert!(checked.out.contains("digest") && checked.out.contains("ok    clock"), "{}", checked.out);

@@ -191,7 +191,6 @@ impl Form {
         }
     }
 
-    /// Returns the keys that are valid for this form.
     fn keys(&self) -> &'static [&'static str] {
         match self {
             Form::Likert { .. } => &["points", "low", "high"],

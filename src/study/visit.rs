@@ -246,7 +246,6 @@ impl Visit {
         Ok(())
     }
 
-    /// Describes what was erased and what is kept after a withdrawal.
     fn kept_after_withdrawal(&self) -> String {
         "Erased: your runs with everything you did, wrote and answered in them. Kept: your label, the times of your visits, your \
          withdrawal, the names of the erased runs, and anything that the experimenter noted or copied before."

@@ -15,9 +15,7 @@ use crate::lab::Lab;
 pub struct Player<'a> {
     console: Console,
     clock: &'a ScriptedClock,
-    /// Actions of the participant.
     pub diary: Diary,
-    /// Start of the run.
     began: i64,
     /// Current screen, previous screen, and the time of the change.
     view: (&'static str, &'static str, i64),
@@ -113,7 +111,6 @@ impl<'a> Player<'a> {
         self.does("end y");
     }
 
-    /// Starts the session.
     pub fn begin(&mut self) {
         self.began = self.clock.moment();
         self.note("start", "baseline", "short", None);
@@ -140,7 +137,6 @@ impl<'a> Player<'a> {
         self.diary.answered(asked, value, for_ms);
     }
 
-    /// Opens another screen.
     pub fn go(&mut self, key: &str, screen: &'static str) {
         self.does(key);
         self.close_view();
@@ -175,7 +171,6 @@ impl<'a> Player<'a> {
         self.read_dialog(keys, "explanation", seconds);
     }
 
-    /// Runs a statement on the SQL screen.
     pub fn query(&mut self, sql: &str, error: &str) {
         self.does(&format!("'{}' f5 esc", sql.replace(' ', "' _ '")));
         self.note("draft", "sql", "sent", Some(0));
@@ -183,7 +178,6 @@ impl<'a> Player<'a> {
         self.diary.queries.push(sql.to_owned());
     }
 
-    /// Saves notes.
     pub fn keep_notes(&mut self, text: &str, seconds: u64) {
         self.does("tab e");
         self.does(&format!("'{}'", text.replace(' ', "' _ '")));
@@ -231,7 +225,6 @@ impl<'a> Player<'a> {
         self.type_price(price);
     }
 
-    /// Sets the price again.
     pub fn set_price_again(&mut self, price: &str) {
         self.select("enter", "tool", "set_prices");
         self.does("up");

@@ -52,9 +52,7 @@ pub struct Diary {
     pub sittings_not_closed: u32,
     /// Rationales of simulated weeks, and whether forecasts were filled naively.
     pub weeks: Vec<(String, bool)>,
-    /// Statements.
     pub queries: Vec<String>,
-    /// Texts of notes.
     pub notes: Vec<String>,
     /// Whether the run has ended.
     pub over: bool,
@@ -78,12 +76,10 @@ impl Diary {
         *bounds = (bounds.0 + least, bounds.1 + most);
     }
 
-    /// Returns the milliseconds of the whole run.
     pub fn spent(&self, what: Spent) -> u64 {
         self.time.iter().filter(|((_, own), _)| *own == what).map(|(_, ms)| ms).sum()
     }
 
-    /// Records an answer.
     pub fn answered(&mut self, asked: Asked, value: &str, for_ms: u64) {
         let breaks = self.answers.iter().filter(|answer| answer.question == BREAK.question).count();
         let occasion = match asked.occasion {
@@ -93,7 +89,6 @@ impl Diary {
         self.answers.push(Answered { occasion, question: asked.question, value: value.to_owned(), for_ms });
     }
 
-    /// Returns the number of lines of a kind.
     pub fn count(&self, kind: &str) -> usize {
         self.deeds.iter().filter(|deed| deed.kind == kind).count()
     }

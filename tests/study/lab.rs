@@ -110,17 +110,14 @@ impl Lab {
         self.home.0.path().join(name)
     }
 
-    /// Returns the folder of the study.
     pub fn study(&self) -> PathBuf {
         self.path("study")
     }
 
-    /// Returns the folder of runs of a machine.
     pub fn machine(&self, name: &str) -> PathBuf {
         self.path(name)
     }
 
-    /// Reads the study.
     pub fn read_study(&self) -> Study {
         Study::read(&self.study()).expect("a study")
     }
@@ -143,12 +140,10 @@ impl Lab {
         self.command(&[before, &machines, after].concat())
     }
 
-    /// Returns the folder of the tables.
     pub fn data(&self) -> PathBuf {
         self.path("data")
     }
 
-    /// Collects the runs of the machines.
     pub fn collect(&self) -> Said {
         let (data, study) = (self.data().display().to_string(), self.study().display().to_string());
         self.about_machines(&["study", "collect"], &["--out", &data, "--protocol", &study])

@@ -17,7 +17,6 @@ pub struct Plain<'a> {
     answers: BufReader<ChildStdout>,
     /// Time of the previous line.
     said: Instant,
-    /// Actions of the participant.
     pub diary: Diary,
 }
 
@@ -67,7 +66,6 @@ impl<'a> Plain<'a> {
         self.diary.deeds.push(Deed { at: 0, week: self.diary.week(), kind, what, which, for_ms: None });
     }
 
-    /// Answers a question.
     pub fn answer(&mut self, asked: Asked, typed: &str, value: &str) {
         self.say(typed);
         self.note("question", asked.questionnaire, asked.question);
@@ -75,14 +73,12 @@ impl<'a> Plain<'a> {
         self.diary.answered(asked, value, 0);
     }
 
-    /// Calls a tool.
     pub fn call(&mut self, tool: &str, arguments: &str) {
         self.say(&format!("{tool} {arguments}"));
         self.wait_for(&format!("ok {tool}"));
         self.note("call", tool, "plain");
     }
 
-    /// Runs an SQL statement.
     pub fn query(&mut self, sql: &str) {
         self.say(&format!("sql {sql}"));
         self.note("query", "typed", "");
@@ -104,7 +100,6 @@ impl<'a> Plain<'a> {
         self.note("select", "command", "inbox");
     }
 
-    /// Stops and restarts the clock.
     pub fn pause(&mut self, reason: &str) {
         let before = Instant::now();
         self.say(&format!("pause {reason}"));
@@ -119,7 +114,6 @@ impl<'a> Plain<'a> {
         self.diary.between(Spent::Paused, least, ms(before));
     }
 
-    /// Simulates a week.
     pub fn week(&mut self, why: &str) {
         self.say(&format!("next \"{why}\" naive"));
         let week = self.diary.weeks.len() + 1;

@@ -20,7 +20,6 @@ fn read(folder: &Path, table: &str) -> Vec<Row> {
     reader.records().map(|record| row(record.expect("a row"))).collect()
 }
 
-/// Returns the rows of a participant.
 fn of<'a>(rows: &'a [Row], label: &str) -> Vec<&'a Row> {
     rows.iter().filter(|row| row["participant"] == label).collect()
 }
@@ -58,7 +57,6 @@ fn deeds(diary: &Diary, rows: &[&Row]) {
     assert_eq!(told.len(), done.len(), "{}", diary.label);
 }
 
-/// Compares the row of `runs.csv`.
 fn whole_run(diary: &Diary, row: &Row) {
     let deeds = |part: fn(&Deed) -> bool| diary.deeds.iter().filter(|deed| part(deed)).count().to_string();
     let number = diary.label[1..].parse::<u64>().expect("a number");
@@ -138,7 +136,6 @@ fn times(diary: &Diary, row: &Row) {
     assert_eq!(told("active_seconds_after_end"), own(Spent::After), "{}", diary.label);
 }
 
-/// Compares the rows of `weeks.csv`.
 fn single_weeks(diary: &Diary, rows: &[&Row]) {
     assert_eq!(rows.len(), diary.weeks.len(), "{}", diary.label);
     for (week, row) in (1..).zip(rows) {
@@ -163,13 +160,11 @@ fn single_weeks(diary: &Diary, rows: &[&Row]) {
     }
 }
 
-/// Compares one column.
 fn cells(diary: &Diary, rows: &[&Row], column: &str, expected: &[String]) {
     let told: Vec<&String> = rows.iter().map(|row| &row[column]).collect();
     assert_eq!(told, expected.iter().collect::<Vec<_>>(), "{}: {column}", diary.label);
 }
 
-/// Compares the rows of `answers.csv`.
 fn given(diary: &Diary, rows: &[&Row]) {
     let told: Vec<Answered> = rows
         .iter()

@@ -88,7 +88,6 @@ pub fn audit(study: &Study, machines: &[PathBuf]) -> Result<Audit, RunError> {
     Ok(audit)
 }
 
-/// Returns the finding that a participant finished and their run is missing.
 fn run_gone(visit: &VisitLine) -> AuditFinding {
     AuditFinding {
         kind: AuditKind::Missing,
@@ -100,7 +99,6 @@ fn run_gone(visit: &VisitLine) -> AuditFinding {
     }
 }
 
-/// Returns the finding that there is no run to audit.
 fn nothing_examined(study: &Study, runs: &[&RunRecord], machines: &[PathBuf]) -> Option<AuditFinding> {
     if runs.iter().any(|run| run.is_of(&study.digest)) {
         return None;

@@ -40,7 +40,6 @@ impl RunRecord {
         RunRecord { id, folder, manifest, trajectory }
     }
 
-    /// Returns the study that the record names, if any.
     pub(super) fn stamp(&self) -> Option<&StudyStamp> {
         self.manifest.as_ref()?.study.as_ref()
     }

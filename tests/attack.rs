@@ -1,7 +1,7 @@
-//! Hundreds of statements against the SQL prompt: nothing hidden is read, nothing is written, and each one ends
-//! within the limits (docs/formats/database.md#queries).
+//! Hundreds of hostile SQL statements: none reads hidden data, none writes, and each one ends within the limits
+//! (docs/formats/database.md#queries).
 //!
-//! A program of its own: SQLite counts its memory for the whole process.
+//! This is a separate program because SQLite limits memory for the whole process.
 
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard};
@@ -16,24 +16,24 @@ use novamind::record::trajectory::record::Via;
 use novamind::session::{NewRun, Session, Storage};
 use serde_json::json;
 
-/// No clock decides here: what is endless ends by its number of steps.
+/// The time limit is out of reach: endless statements end at the limit of steps.
 const LIMITS: Limits = Limits { rows: 5000, time: Duration::from_secs(3600), steps: Some(400_000) };
 
-/// For what is to be answered to its end.
+/// Limits for statements that must complete.
 const AMPLE: Limits = Limits { steps: Some(1_000_000_000), ..LIMITS };
 
-/// What one test takes of the memory would stop the queries of another.
+/// Serializes the tests, because the memory that one uses could stop the queries of another.
 static MEMORY: Mutex<()> = Mutex::new(());
 
 fn alone() -> MutexGuard<'static, ()> {
     MEMORY.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
-/// A company of six weeks, with rows in as many tables as it can have.
+/// Creates a company of six weeks with rows in as many tables as possible.
 fn played(folder: &Path) -> Session {
     let storage = Storage::Runs(folder.to_owned());
     let new = NewRun { seed: Some(7), days: Some(60), storage, ..NewRun::default() };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("the run begins");
+    let mut session = Session::create(new, &Configuration::shipped()).expect("the run starts");
     for (tool, arguments) in [
         ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
         ("set_model_tiers", json!({"B": 2, "C": 4})),
@@ -53,7 +53,7 @@ fn played(folder: &Path) -> Session {
     session
 }
 
-/// Everything in a database file, the schema included.
+/// Returns the contents of a database file with its schema.
 fn contents(folder: &Path) -> Vec<String> {
     let flags = rusqlite::OpenFlags::SQLITE_OPEN_READ_ONLY;
     let connection =
@@ -106,7 +106,7 @@ fn first_cell(rows: &Rows) -> String {
     }
 }
 
-/// What is wrong with the outcome of an attack; none if it is as it must be.
+/// Returns a description if the outcome of an attack is not the expected one.
 fn problem(attack: &Attack, outcome: &Result<Rows, QueryError>) -> Option<String> {
     let (head, value) = attack.head.split_once(' ').unwrap_or((&attack.head, ""));
     let fits = match (head, outcome) {
@@ -119,7 +119,7 @@ fn problem(attack: &Attack, outcome: &Result<Rows, QueryError>) -> Option<String
         Ok(rows) => format!("answered with {} rows, first {}", rows.rows.len(), first_cell(rows)),
         Err(error) => format!("refused {}: {}", error.code, error.message),
     };
-    (!fits).then(|| format!("{}\n    must be {}, but was {told}", attack.sql, attack.head))
+    (!fits).then(|| format!("{}\n    expected {}, got {told}", attack.sql, attack.head))
 }
 
 fn ask_all(connection: &QueryConnection, attacks: &[Attack], secrets: &[String]) {
@@ -140,7 +140,7 @@ fn ask_all(connection: &QueryConnection, attacks: &[Attack], secrets: &[String])
             if texts.iter().any(|text| text.contains(secret.as_str()))
                 && !attack.sql.contains(secret.as_str())
             {
-                problems.push(format!("{}\n    tells {secret}", attack.sql));
+                problems.push(format!("{}\n    reveals {secret}", attack.sql));
             }
         }
     }
@@ -156,7 +156,7 @@ fn statements_read_nothing_hidden_write_nothing_and_end() {
     let (before, hash) = (contents(&folder), session.state_hash());
     let position = rusqlite::Connection::open(folder.join("world.db"))
         .and_then(|own| own.query_row("SELECT line_hash FROM projection", [], |row| row.get::<_, String>(0)));
-    // Names and values of the inside, which no answer and no message may tell.
+    // Internal names and values, which no result and no message may reveal.
     const INSIDE: [&str; 12] = [
         "inner_",
         "customer_rows",
@@ -182,9 +182,9 @@ fn statements_read_nothing_hidden_write_nothing_and_end() {
     assert_eq!(contents(&folder), before, "something was written");
     assert_eq!(session.state_hash(), hash);
     for stray in ["attack_copy.db", "attack_other.db", "attack_file.txt"] {
-        assert!(!Path::new(stray).exists() && !folder.join(stray).exists(), "{stray} was made");
+        assert!(!Path::new(stray).exists() && !folder.join(stray).exists(), "{stray} was created");
     }
-    // The connection still answers.
+    // The connection still works.
     let rows = connection.ask("SELECT count(*) FROM group_info_levels", LIMITS).expect("an answer");
     assert_eq!(first_cell(&rows), "26");
 }
@@ -236,14 +236,14 @@ fn sealed_columns_and_tables_do_not_exist_in_any_form() {
     ask_all(&session.database().open_connection().expect("a connection"), &attacks, &[]);
 }
 
-/// Whoever may look with the x-ray finds the hidden tables, and nothing else that others do not.
+/// A query with x-ray permission reads the hidden tables, and nothing else that other queries cannot read.
 #[test]
 fn the_connection_of_the_xray_withstands_the_same_statements() {
     let _alone = alone();
     let runs = tempfile::tempdir().expect("a folder");
     let storage = Storage::Runs(runs.path().to_owned());
     let new = NewRun { days: Some(28), mode: Mode::Debug, storage, ..NewRun::default() };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("the run begins");
+    let mut session = Session::create(new, &Configuration::shipped()).expect("the run starts");
     session.step(2, &mut |_| {}).expect("days");
     let mut problems = Vec::new();
     let names_hidden = |sql: &str| {
@@ -251,7 +251,7 @@ fn the_connection_of_the_xray_withstands_the_same_statements() {
         names.iter().any(|name| sql.to_lowercase().contains(name))
     };
     for attack in attacks() {
-        // No number of steps ends these here.
+        // The limit of steps does not apply to these queries.
         let is_endless = attack.head.starts_with("stopped");
         let is_answered = attack.head.starts_with("answered");
         if is_endless || (!attack.head.starts_with("refused sql_write") && names_hidden(&attack.sql)) {
@@ -263,7 +263,7 @@ fn the_connection_of_the_xray_withstands_the_same_statements() {
             }
             Ok(rows) => Ok(rows),
         };
-        // The company of this run is another: that something is answered is enough.
+        // This run has another company, so only success is checked.
         let head = if is_answered { "answered".to_owned() } else { attack.head };
         problems.extend(problem(&Attack { head, sql: attack.sql }, &outcome));
     }

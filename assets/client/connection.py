@@ -1,6 +1,6 @@
 """The connection to a run that is served on this machine.
 
-The default connection takes the port from the environment variable NOVAMIND_API_PORT and the token, if the server asks for
+The default connection reads the port from the environment variable NOVAMIND_API_PORT and the token, if the server requires
 one, from NOVAMIND_API_TOKEN.
 """
 from __future__ import annotations
@@ -14,16 +14,16 @@ import uuid
 from http.client import HTTPConnection, HTTPException, HTTPResponse
 from typing import Any, Dict, Optional, Tuple
 
-#: Seconds that an answer is waited for; a week of a large company takes a few.
+#: Seconds to wait for a response; a week of a large company takes a few.
 TIMEOUT = 1800.0
 #: Seconds to wait before each retry.
 RETRY_WAITS = (0.1, 0.2, 0.4, 0.8, 1.6)
-#: Longest wait that a server can ask for, seconds.
+#: Maximum wait that a server can request, seconds.
 MAX_WAIT = 10.0
 
 
 class NovamindError(Exception):
-    """A refusal, or a server that does not answer. Its text says what is wrong; ``code`` and ``field`` are for programs."""
+    """A rejection, or a server that does not respond. The text describes the problem; ``code`` and ``field`` are for programs."""
 
     def __init__(self, message: str, code: Optional[str] = None, field: Optional[str] = None) -> None:
         super().__init__(message)
@@ -32,15 +32,15 @@ class NovamindError(Exception):
 
 
 class Connection:
-    """The connection to one run. Threads can share it: it sends one request after the other.
+    """The connection to one run. Threads can share it: it sends one request after another.
 
-    A request that got no answer, or found the server full, is sent again. It carries the same ``request_id`` each time, so
-    the server runs it once.
+    A request is retried if it gets no response or the server has too many connections. Each retry has the same ``request_id``,
+    so the server runs it once.
 
     Args:
-        port: the port of the server; without it NOVAMIND_API_PORT.
-        token: the token of the server; without a port NOVAMIND_API_TOKEN.
-        timeout: seconds that an answer is waited for; without it TIMEOUT.
+        port: the port of the server; default NOVAMIND_API_PORT.
+        token: the token of the server; without a port, default NOVAMIND_API_TOKEN.
+        timeout: seconds to wait for a response; default TIMEOUT.
     """
 
     def __init__(self, port: Optional[int] = None, token: Optional[str] = None, timeout: Optional[float] = None) -> None:
@@ -50,10 +50,10 @@ class Connection:
         self._open: Optional[HTTPConnection] = None
 
     def request(self, method: str, path: str, body: Optional[Dict[str, Any]] = None) -> Dict[str, Any]:
-        """Sends a request and returns its JSON, whatever it says.
+        """Sends a request and returns the JSON of the response, even if it is a rejection.
 
         Raises:
-            NovamindError: no server answers, or it wants a token that was not given (code ``token``).
+            NovamindError: no server responds, or it requires a token that is missing or wrong (code ``token``).
         """
         port, token = self._address()
         headers = {"Content-Type": "application/json"}
@@ -65,16 +65,16 @@ class Connection:
         try:
             answer = json.loads(text)
         except ValueError as error:
-            raise NovamindError(f"the server answered {status} and something else than JSON", "no_json") from error
+            raise NovamindError(f"the server responded with status {status}, but not with JSON", "no_json") from error
         if status == 401:
             said = answer.get("error") if isinstance(answer, dict) else None
             raise NovamindError(
-                f"{said or 'the server wants a token'}; set NOVAMIND_API_TOKEN to the text of the file named by --token",
+                f"{said or 'the server requires a token'}; set NOVAMIND_API_TOKEN to the text of the file named by --token",
                 "token",
             )
         if status == 503:
             said = answer.get("error") if isinstance(answer, dict) else None
-            raise NovamindError(str(said or "the server is full"), "too_many_connections")
+            raise NovamindError(str(said or "the server has too many connections"), "too_many_connections")
         return answer
 
     def call(self, tool: str, arguments: Dict[str, Any], request_id: Optional[str] = None) -> Any:
@@ -83,10 +83,10 @@ class Connection:
         Args:
             tool: the name of the tool.
             arguments: its arguments.
-            request_id: the id of the request; without it a new one. A request with an id that was sent before is not run again.
+            request_id: the id of the request; default a new id. A request whose id was sent before is not run again.
 
         Raises:
-            NovamindError: the refusal of the tool.
+            NovamindError: the tool rejected the call.
         """
         given = {name: value for name, value in arguments.items() if value is not None}
         body = {"tool": tool, "args": given, "request_id": new_id() if request_id is None else request_id}
@@ -98,13 +98,13 @@ class Connection:
             text = os.environ.get("NOVAMIND_API_PORT", "")
             if not text.isdigit():
                 raise NovamindError(
-                    "NOVAMIND_API_PORT does not hold the port of a server; start one with: novamind serve", "no_port"
+                    "NOVAMIND_API_PORT is not the port of a server; start a server with: novamind serve", "no_port"
                 )
             port = int(text)
             token = token or os.environ.get("NOVAMIND_API_TOKEN", "")
         token = (token or "").strip()
         if any(letter.isspace() or not letter.isascii() for letter in token):
-            raise NovamindError("the token holds more than a token", "token")
+            raise NovamindError("the token must not contain spaces or characters outside of ASCII", "token")
         return port, token
 
     def _send_until_answered(
@@ -118,7 +118,7 @@ class Connection:
                 wait = max(wait, _seconds(response.getheader("Retry-After")))
             except (OSError, HTTPException) as error:
                 if wait is None:
-                    raise NovamindError(f"the server on port {port} does not answer: {error}", "no_server") from error
+                    raise NovamindError(f"the server on port {port} does not respond: {error}", "no_server") from error
             time.sleep(wait)
         raise AssertionError("the last attempt returns or raises")
 
@@ -135,7 +135,7 @@ class Connection:
             response = connection.getresponse()
             return response, response.read()
         except BaseException:
-            # An answer that comes later must not be taken for that of the next request.
+            # A late response must not be read as that of the next request.
             self._close()
             raise
 
@@ -146,7 +146,7 @@ class Connection:
 
 
 def _is_closed_by_server(connection: HTTPConnection) -> bool:
-    """Whether the other end has closed: then there is something to read, which is the end."""
+    """Returns whether the server has closed the connection, which makes the socket readable."""
     if connection.sock is None:
         return False
     with selectors.DefaultSelector() as selector:
@@ -159,22 +159,22 @@ def _seconds(header: Optional[str]) -> float:
 
 
 def new_id() -> str:
-    """A new id for a request."""
+    """Returns a new id for a request."""
     return uuid.uuid4().hex
 
 
 def checked(answer: Dict[str, Any]) -> Dict[str, Any]:
-    """The answer, unless it is a refusal.
+    """Returns the response, unless it is a rejection.
 
     Raises:
-        NovamindError: what was refused, and why.
+        NovamindError: the response is a rejection.
     """
     if answer.get("success") is False:
         raise NovamindError(str(answer.get("error")), answer.get("code"), answer.get("field"))
     return answer
 
 
-#: The connection of the functions of this package.
+#: The connection that the functions of this package use.
 default = Connection()
 request = default.request
 call = default.call

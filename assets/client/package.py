@@ -7,7 +7,8 @@
     print(novamind.query("SELECT SUM(amount) AS cash FROM ledger")["rows"])
     print(novamind.next_week("a first price", novamind.naive_predictions())["dashboard"])
 
-The functions play the run of NOVAMIND_API_PORT and NOVAMIND_API_TOKEN. For several runs in one process, use a ``Client`` each:
+The functions play the run of NOVAMIND_API_PORT and NOVAMIND_API_TOKEN. To play several runs in one process, create a ``Client``
+for each:
 
     first, second = novamind.Client(8001), novamind.Client(8002, token="...")
     first.pricing.set_prices(A=14)
@@ -32,8 +33,8 @@ class Client:
     """One run. Threads can share it.
 
     Args:
-        port: the port of the server; without it NOVAMIND_API_PORT.
-        token: the token of the server; without a port NOVAMIND_API_TOKEN.
+        port: the port of the server; default NOVAMIND_API_PORT.
+        token: the token of the server; without a port, default NOVAMIND_API_TOKEN.
         connection: a connection to use instead.
     """
 
@@ -51,26 +52,26 @@ class Client:
         self.scripts = scripts.Scripts(self.connection)
 
     def get_vars(self) -> Dict[str, Any]:
-        """The current day: the last one that was simulated, 0 before the first week."""
+        """Returns current_day: the last simulated day, 0 before the first week."""
         return self.connection.request("GET", "/vars")
 
     def current_day(self) -> int:
-        """The last day that was simulated."""
+        """Returns the last simulated day."""
         return int(self.get_vars()["current_day"])
 
     def dashboard(self) -> str:
-        """The dashboard of the last week."""
+        """Returns the dashboard of the last week."""
         return str(self.connection.request("GET", "/dashboard")["dashboard"])
 
     def game_status(self) -> Dict[str, Any]:
-        """day, cash (dollars), subscribers (active subscriptions), total_days, and how the run ended, if it did."""
+        """Returns day, cash (dollars), subscribers (active subscriptions), total_days, and how the run ended, if it has."""
         return self.connection.request("GET", "/game-status")
 
     def query(self, sql: str) -> Dict[str, Any]:
-        """Asks the database one statement: columns, rows (as objects), row_count. Hints and warnings go to standard error.
+        """Runs one SQL statement and returns columns, rows (as objects), row_count. Prints hints and warnings to standard error.
 
         Raises:
-            NovamindError: the statement is wrong, or reads what cannot be seen.
+            NovamindError: the statement is invalid, or reads hidden data.
         """
         answer = checked(self.connection.request("POST", "/query", {"sql": sql}))
         for remark in ("warning", "hint"):
@@ -85,17 +86,17 @@ class Client:
         expected_day: Optional[int] = None,
         request_id: Optional[str] = None,
     ) -> Dict[str, Any]:
-        """Files why and what is expected, and lets a week pass: day, dashboard, cash, figures, ended.
+        """Files a rationale and forecasts, and simulates a week. Returns day, dashboard, cash, figures, ended.
 
         Args:
-            rationale: why these decisions.
+            rationale: the reason for the decisions.
             predictions: cash in dollars after 1, 4, 12 and 26 weeks, each with point, lower and upper, under the keys cash_1wk,
                 cash_4wk, cash_12wk and cash_26wk.
-            expected_day: the day on which the run must be; on another day the week is refused.
-            request_id: the id of the request; without it a new one. A request with an id that was sent before is not run again.
+            expected_day: the day on which the run must be; otherwise the week is rejected.
+            request_id: the id of the request; default a new id. A request whose id was sent before is not run again.
 
         Raises:
-            NovamindError: something is missing, the run is over, or it is on another day. No day has passed then.
+            NovamindError: an argument is missing, the run has ended, or it is on another day. No day was simulated.
         """
         body = {"rationale": rationale, "predictions": predictions, "request_id": new_id() if request_id is None else request_id}
         if expected_day is not None:
@@ -103,7 +104,7 @@ class Client:
         return checked(self.connection.request("POST", "/next-week", body))
 
     def naive_predictions(self, spread: float = 0.1) -> Dict[str, Dict[str, float]]:
-        """Forecasts that expect the cash of today, with a spread of a share of it to both sides: a beginning, not a forecast."""
+        """Returns placeholder forecasts: today's cash, plus and minus ``spread`` as a share of it."""
         cash = float(self.game_status()["cash"])
         around = {"point": cash, "lower": cash - abs(cash) * spread, "upper": cash + abs(cash) * spread}
         return {f"cash_{weeks}wk": dict(around) for weeks in (1, 4, 12, 26)}

@@ -1,7 +1,7 @@
-"""Runs one script of a player: the program starts it, answers what it asks, and waits for its end.
+"""Runs one script of a player. The program starts this process, answers its requests, and waits for its end.
 
-Standard input is a socket to the program, line by line as JSON. Its first line holds the code and the limits; after it a
-request goes up and its answer comes down. The script sees only the functions below.
+Standard input is a socket to the program with one JSON object per line. The first line has the code and the limits; then
+each request of this process gets one response. The script has access only to the functions below.
 """
 import json
 import linecache
@@ -10,18 +10,18 @@ import sys
 import traceback
 import types
 
-#: Bytes of a request, at most.
+#: Maximum size of a request, bytes.
 MOST_REQUEST = 1 << 20
 
-#: Where landlock allows to read: the libraries that a script may import, and what the C library looks at.
+#: Paths that landlock allows to read: libraries that a script may import, and files that the C library needs.
 SYSTEM = (
     "/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib", "/usr/local/lib64", "/nix/store",
     "/usr/share/zoneinfo", "/etc/localtime", "/etc/ld.so.cache", "/dev/null", "/dev/zero", "/dev/urandom",
 )
 
-#: System calls that are refused, by machine: new processes and programs, sockets and messages to them, signals to others, a look
-#: into others' memory, their limits and their place in the queue, memory and queues that outlive the script, keys, and rights,
-#: times and attributes of files. Before them stand the machine's sign and its number of prctl.
+#: Blocked system calls by machine: new processes and programs, sockets and messages, signals to other processes, access to their
+#: memory, limits and scheduling, memory and queues that outlive the script, keys, and permissions, times and attributes of files.
+#: They follow the audit architecture of the machine and its number of prctl.
 REFUSED = {
     "x86_64": (0xC000003E, 157, (
         29, 30, 31, 41, 44, 46, 53, 56, 57, 58, 59, 62, 64, 68, 90, 91, 92, 93, 94, 101, 129, 132, 141, 142, 144, 188, 189, 190,
@@ -36,7 +36,7 @@ REFUSED = {
 
 
 class NovamindError(Exception):
-    """A refusal. Its text says what is wrong, ``code`` is for programs."""
+    """A rejection. The text describes the problem; ``code`` is for programs."""
 
     def __init__(self, code, message):
         super().__init__(code + ": " + message)
@@ -44,12 +44,12 @@ class NovamindError(Exception):
 
 
 class Channel:
-    """What asks the program."""
+    """The channel for requests to the program."""
 
     def __init__(self):
         self.up = os.dup(0)
         self.down = os.fdopen(os.dup(0), "rb")
-        # Whoever reads standard input finds its end.
+        # A script that reads standard input gets end of file.
         nothing = os.open(os.devnull, os.O_RDONLY)
         os.dup2(nothing, 0)
         os.close(nothing)
@@ -76,13 +76,13 @@ class Channel:
 
 
 def functions(channel):
-    """The module that a script finds."""
-    module = types.ModuleType("novamind_script", "What a script may ask the run.")
+    """Returns the module ``novamind_script``."""
+    module = types.ModuleType("novamind_script", "Functions for scripts to query the run.")
 
     def query(sql):
-        """The rows of one read-only SQL statement over the visible tables, as a list of dicts.
+        """Returns the rows of one read-only SQL statement over the visible tables as a list of dicts.
 
-        Rules and limits are those of the tool query: at most 5,000 rows; warnings and hints go to standard error.
+        The rules and limits are those of the tool query: at most 5,000 rows; warnings and hints go to standard error.
         """
         if not isinstance(sql, str):
             raise TypeError("query takes one SQL statement as a text")
@@ -93,7 +93,7 @@ def functions(channel):
         return answer["rows"]
 
     def get_vars():
-        """Where the run stands: current_day, the last day that was simulated."""
+        """Returns the state of the run: current_day, the last simulated day."""
         return channel.ask({"ask": "vars"})
 
     for own in (query, get_vars, NovamindError):
@@ -103,7 +103,7 @@ def functions(channel):
 
 
 def limit(seconds, memory):
-    """Bounds what the process may take of the machine; what a system does not know is left out."""
+    """Limits the resources of the process. Skips limits that the system does not support."""
     try:
         import resource
     except ImportError:
@@ -123,7 +123,7 @@ def limit(seconds, memory):
 
 
 def enclose():
-    """On Linux, takes away what a script has no business with; each part where the kernel has it."""
+    """Isolates the process on Linux, with each mechanism that the kernel supports."""
     if not sys.platform.startswith("linux"):
         return
     try:
@@ -135,10 +135,10 @@ def enclose():
     def call(function, *values):
         return function(*(each if each is None or isinstance(each, ctypes._Pointer) else ctypes.c_long(each) for each in values))
 
-    # It ends with the program, and gains no rights: without that, nothing below is allowed.
+    # The process ends with the program and gains no privileges; the steps below require the latter.
     call(libc.prctl, 1, 9, 0, 0, 0)
     call(libc.prctl, 38, 1, 0, 0, 0)
-    # A user and a network of its own, and no memory that others share.
+    # Separate namespaces for users, network and shared memory.
     if hasattr(libc, "unshare"):
         call(libc.unshare, 0x10000000 | 0x40000000)
         call(libc.unshare, 0x08000000)
@@ -150,7 +150,7 @@ def enclose():
 
 
 def fence_files(ctypes, libc, call):
-    """Landlock: libraries and the empty folder of work can be read; nothing can be changed or started."""
+    """Restricts files with landlock: libraries and the empty working folder can be read; nothing can be written or executed."""
 
     class Ruleset(ctypes.Structure):
         _fields_ = [("files", ctypes.c_uint64), ("network", ctypes.c_uint64), ("scope", ctypes.c_uint64)]
@@ -185,7 +185,7 @@ def fence_files(ctypes, libc, call):
 
 
 def refuse_calls(ctypes, libc, call):
-    """Seccomp: calls of the kernel that answer with an error, whatever the script does."""
+    """Blocks system calls with seccomp: they return an error."""
 
     class Step(ctypes.Structure):
         _fields_ = [("code", ctypes.c_uint16), ("yes", ctypes.c_uint8), ("no", ctypes.c_uint8), ("value", ctypes.c_uint32)]
@@ -199,10 +199,10 @@ def refuse_calls(ctypes, libc, call):
     architecture, prctl, numbers = REFUSED[machine]
     load, equal, at_least, answer = 0x20, 0x15, 0x35, 0x06
     steps = [(load, 0, 0, 4), (equal, 1, 0, architecture), (answer, 0, 0, 0x80000000), (load, 0, 0, 0)]
-    # Another numbering of the same machine.
+    # Calls of the x32 ABI, which have other numbers.
     steps.append((at_least, len(numbers) + 4, 0, 0x40000000))
     steps.extend((equal, len(numbers) - at + 3, 0, number) for at, number in enumerate(numbers))
-    # That it ends with the program stays as it is: the first option of prctl is refused, the others are not.
+    # Only option 1 of prctl (the signal at the death of the parent) is blocked.
     steps.extend([(equal, 0, 2, prctl), (load, 0, 0, 16), (equal, 1, 0, 1)])
     steps.extend([(answer, 0, 0, 0x7FFF0000), (answer, 0, 0, 0x00050001)])
     program = (Step * len(steps))(*(Step(*step) for step in steps))
@@ -210,7 +210,7 @@ def refuse_calls(ctypes, libc, call):
 
 
 def run(code, module):
-    """Runs the code; returns its exit code. A traceback goes to standard error, without the frames that lead to it."""
+    """Runs the code and returns its exit code. Prints a traceback without the frames of this file to standard error."""
     lines = code.splitlines(keepends=True)
     linecache.cache["<script>"] = (len(code), None, lines, "<script>")
     script = types.ModuleType("__main__")
@@ -218,7 +218,7 @@ def run(code, module):
         setattr(script, name, getattr(module, name))
     sys.modules.update({"__main__": script, module.__name__: module})
     sys.argv = ["<script>"]
-    # Without it, nothing could be said once memory is full.
+    # Memory for printing the traceback after a MemoryError.
     reserve = [bytearray(16 << 20)]
     try:
         exec(compile(code, "<script>", "exec", dont_inherit=True), script.__dict__)

@@ -1,4 +1,4 @@
-//! `assignment.csv`: who takes part, under which condition, with which seed, in which order.
+//! `assignment.csv`: condition, seed and order of each participant.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -10,10 +10,10 @@ use novamind_world::params::ParameterError;
 /// Name of the file in the folder of the study.
 pub const ASSIGNMENT_FILE: &str = "assignment.csv";
 
-/// Who takes part.
+/// The participants of a study.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Assignment {
-    /// One for each participant, in the order of the file.
+    /// One place per participant, in the order of the file.
     pub places: Vec<Place>,
 }
 
@@ -22,11 +22,11 @@ pub struct Assignment {
 pub struct Place {
     /// Label.
     pub label: String,
-    /// Condition; none in a study without conditions.
+    /// Condition; `None` in a study without conditions.
     pub condition: Option<String>,
-    /// Seed of the session; none where everybody plays the same.
+    /// Seed of the session; `None` if all participants play the same seed.
     pub seed: Option<u64>,
-    /// Place in the order of the study, from 1.
+    /// Position in the order of the study, from 1.
     pub order: u32,
 }
 
@@ -34,10 +34,10 @@ pub struct Place {
 const COLUMNS: [&str; 4] = ["label", "condition", "seed", "order"];
 
 impl Assignment {
-    /// Reads the assignment in the folder of a study; none if there is no file.
+    /// Reads the assignment in the folder of a study. Returns `None` if there is no file.
     ///
     /// # Errors
-    /// A line is wrong, or a label stands there twice; the error names the line.
+    /// Fails if a line is invalid or a label occurs twice. The error names the line.
     pub fn read(folder: &Path) -> Result<Option<Assignment>, RunError> {
         let path = folder.join(ASSIGNMENT_FILE);
         match std::fs::read(&path) {
@@ -47,10 +47,10 @@ impl Assignment {
         }
     }
 
-    /// Reads the bytes of a file.
+    /// Parses the contents of `assignment.csv`; `source` is its name in errors.
     ///
     /// # Errors
-    /// As [`Assignment::read`].
+    /// Fails like [`Assignment::read`], except for I/O.
     pub fn parse(source: &str, bytes: &[u8]) -> Result<Assignment, ParameterError> {
         let wrong = |line: usize, key: &str, problem: String| ParameterError {
             source: source.to_owned(),
@@ -62,7 +62,7 @@ impl Assignment {
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes);
         let header = reader.headers().map_err(|error| wrong(1, "", error.to_string()))?.clone();
         if header.iter().ne(COLUMNS) {
-            return Err(wrong(1, "", format!("the first line has to be {}", COLUMNS.join(","))));
+            return Err(wrong(1, "", format!("the first line must be {}", COLUMNS.join(","))));
         }
         let (mut places, mut known) = (Vec::new(), BTreeSet::new());
         for record in reader.records() {
@@ -73,7 +73,7 @@ impl Assignment {
             let label = cell(0).to_owned();
             participant_folder(Path::new(""), &label).map_err(|problem| wrong(line, "label", problem))?;
             if !known.insert(label.clone()) {
-                return Err(wrong(line, "label", format!("{label} stands here twice")));
+                return Err(wrong(line, "label", format!("{label} occurs twice")));
             }
             let whole = |at: usize| match cell(at) {
                 "" => Ok(None),
@@ -89,12 +89,12 @@ impl Assignment {
         Ok(Assignment { places })
     }
 
-    /// The place of a participant.
+    /// Returns the place of a participant.
     pub fn place(&self, label: &str) -> Option<&Place> {
         self.places.iter().find(|place| place.label == label)
     }
 
-    /// The file.
+    /// Returns the contents of `assignment.csv`.
     pub fn as_csv(&self) -> String {
         let line = |place: &Place| {
             let seed = place.seed.map_or(String::new(), |seed| seed.to_string());
@@ -109,7 +109,7 @@ impl Assignment {
         format!("{}\n{lines}", COLUMNS.join(","))
     }
 
-    /// Gives labels the cells of a design, each cell once in every block, in an order that a seed draws.
+    /// Assigns the cells of a design to labels. Each block has every cell once, in random order with `draw` as the seed.
     pub fn in_blocks(labels: &[String], seeds: &[u64], conditions: &[String], draw: u64) -> Assignment {
         let conditions: Vec<Option<String>> = match conditions {
             [] => vec![None],
@@ -137,7 +137,7 @@ impl Assignment {
     }
 }
 
-/// The numbers below `count` in an order that a seed draws for a block: sorted by a keyed hash, the same on any machine.
+/// Returns the numbers below `count` in a random order for a block: sorted by a keyed hash, the same on every machine.
 fn shuffled(count: usize, draw: u64, block: u64) -> Vec<usize> {
     let key = |at: usize| {
         let drawn = [draw.to_le_bytes(), block.to_le_bytes(), (at as u64).to_le_bytes()].concat();

@@ -2,5 +2,5 @@
 
 use std::sync::Arc;
 
-/// Says whether a word is the experimenter's code.
+/// A function that checks whether a text is the experimenter's code.
 pub type CodeCheck = Arc<dyn Fn(&str) -> bool + Send + Sync>;

@@ -1,7 +1,7 @@
-//! `study.toml`: what an experimenter lays down for all sessions of a study.
+//! `study.toml`: the protocol that all sessions of a study follow.
 //!
-//! A study is a folder: `study.toml`, `consent.md`, `questions/*.toml` and `assignment.csv`. Its digest names the protocol;
-//! it stands in the first line of every run, so that no two protocols pass for one.
+//! A study is a folder: `study.toml`, `consent.md`, `questions/*.toml` and `assignment.csv`. The digest of the protocol is in
+//! the first line of every run, so runs of different protocols cannot be mixed up.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -24,74 +24,73 @@ use novamind_world::params::ParameterError;
 /// Name of the file that makes a folder a study.
 pub const STUDY_FILE: &str = "study.toml";
 
-/// A study that was read from its folder.
+/// A study as read from its folder.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Study {
-    /// Its folder.
+    /// Folder of the study.
     pub folder: PathBuf,
-    /// What `study.toml` says.
+    /// Contents of `study.toml`.
     pub protocol: Protocol,
-    /// The text that participants agree to; none if none is asked for.
+    /// Text that participants agree to; `None` if the study does not ask for consent.
     pub consent: Option<String>,
     /// Questionnaires in the order of their files.
     pub questionnaires: Vec<Questionnaire>,
-    /// Who takes part, and how; none where any label is taken.
+    /// Participants with seeds and conditions; `None` if any label is accepted.
     pub assignment: Option<Assignment>,
-    /// blake3 digest of protocol, consent and questions, in hexadecimal digits. The assignment may grow; what it says of a
-    /// person stands in their run.
+    /// BLAKE3 digest of protocol, consent and questions, in hexadecimal digits. The assignment is not part of it because it
+    /// may grow; each run records its participant's row.
     pub digest: String,
-    /// What seals the snapshots of its runs besides the runs.
+    /// Key that seals the snapshots of the study's runs.
     pub seal_key: SealKey,
 }
 
-/// What `study.toml` says.
+/// Contents of `study.toml`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Protocol {
     /// Name: letters, digits and hyphens.
     pub name: String,
-    /// What participants are shown as its title.
+    /// Title that participants see.
     pub title: String,
-    /// The company of the session.
+    /// Company of the session.
     #[serde(default)]
     pub world: StudyWorld,
-    /// Who plays which seed.
+    /// Seeds of the participants.
     #[serde(default)]
     pub seeds: Seeds,
-    /// What is played first, to learn the controls.
+    /// Practice run before the session.
     #[serde(default)]
     pub practice: Practice,
-    /// What the program shows.
+    /// Display settings for participants.
     #[serde(default)]
     pub session: SessionPage,
-    /// How long a person may take.
+    /// Time limits.
     #[serde(default)]
     pub limits: TimeLimits,
-    /// What is recorded.
+    /// Recording settings.
     #[serde(default)]
     pub record: RecordPage,
-    /// The language model that lends its voice to the runs; none: the built-in voice speaks.
+    /// Language model that words the messages of the runs; `None` for the built-in voice.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub voice: Option<ModelSettings>,
-    /// Settings that earlier builds had. They are read, so that the studies that use them keep their digest, and have no
-    /// effect.
+    /// Settings of earlier builds, without effect. They are still accepted so that studies that have them can be read.
     #[serde(default, skip_serializing)]
     integrity: RemovedSettings,
-    /// What opens what participants do not get.
+    /// The experimenter's access.
     #[serde(default)]
     pub access: AccessPage,
 }
 
-/// The company of the session.
+/// The company that a session plays.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct StudyWorld {
-    /// A shipped scenario.
+    /// A bundled scenario.
     pub scenario: String,
-    /// Last day; as the scenario says if left out.
+    /// Last day; that of the scenario if `None`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub days: Option<u32>,
-    /// Cash on day 0, dollars; as the scenario says if left out.
+    /// Cash on day 0, dollars; that of the scenario if `None`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cash: Option<f64>,
 }
@@ -102,76 +101,76 @@ impl Default for StudyWorld {
     }
 }
 
-/// Who plays which seed.
+/// Seeds and conditions of the participants.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Seeds {
-    /// How seeds are given.
+    /// How seeds are assigned.
     pub plan: SeedPlan,
-    /// The seed of everybody, with plan `one`.
+    /// Seed of every participant, with plan `one`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
-    /// Seeds of a block, with plan `blocks`: each block of participants gets all of them, in random order.
+    /// Seeds of a block, with plan `blocks`: each block of participants gets all of them in random order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub block: Vec<u64>,
-    /// Conditions, crossed with the seeds of a block. They label and balance; they change nothing in the program.
+    /// Conditions, crossed with the seeds of a block. They label and balance participants and do not change the program.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub conditions: Vec<String>,
-    /// Seed of the randomisation, with plan `blocks`; 1 if left out.
+    /// Seed of the randomization, with plan `blocks`; 1 if `None`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub draw: Option<u64>,
 }
 
 impl Seeds {
-    /// The seeds that a block of participants gets.
+    /// Returns the seeds of a block of participants.
     pub fn of_block(&self) -> Vec<u64> {
         if self.block.is_empty() { self.seed.into_iter().collect() } else { self.block.clone() }
     }
 
-    /// Cells of the design: seeds of a block times conditions; the size of a block of participants.
+    /// Returns the size of a block of participants: seeds of a block times conditions.
     pub fn cells(&self) -> usize {
         self.of_block().len().max(1) * self.conditions.len().max(1)
     }
 }
 
-/// How seeds are given.
+/// How seeds are assigned to participants.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SeedPlan {
-    /// Everybody plays the same.
+    /// All participants play the same seed.
     #[default]
     One,
-    /// Randomised in blocks, when the assignment is made.
+    /// `study assign` randomizes seeds and conditions within blocks.
     Blocks,
-    /// As `assignment.csv` says, written by the experimenter.
+    /// The experimenter writes `assignment.csv`.
     Assigned,
 }
 
-/// What is played first, to learn the controls.
+/// The practice run, in which participants learn the controls.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Practice {
-    /// Whether there is a practice, and whether it can be passed over.
+    /// Whether there is a practice run, and whether it can be skipped.
     pub offer: PracticeOffer,
-    /// Its scenario.
+    /// Scenario.
     pub scenario: String,
-    /// Its seed; never that of a session.
+    /// Seed, which must not be a seed of a session.
     pub seed: u64,
-    /// Its last day; as the scenario says if left out.
+    /// Last day; that of the scenario if `None`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub days: Option<u32>,
 }
 
-/// Whether there is a practice.
+/// Whether there is a practice run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PracticeOffer {
-    /// Everybody plays it to its end.
+    /// Participants must play it to its end.
     Required,
-    /// Everybody may pass it over.
+    /// Participants may skip it.
     #[default]
     Optional,
-    /// There is none.
+    /// There is no practice run.
     None,
 }
 
@@ -181,19 +180,19 @@ impl Default for Practice {
     }
 }
 
-/// What the program shows.
+/// Display settings for participants.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SessionPage {
-    /// The tour is shown in the practice.
+    /// Whether the practice run shows the tour.
     pub tour: bool,
-    /// Alerts recommend.
+    /// Whether alerts recommend actions.
     pub advice: bool,
-    /// The person sees how their own forecasts have done while they make new ones.
+    /// Whether participants see the accuracy of their past forecasts during the run.
     pub calibration: bool,
-    /// What the final page shows.
+    /// Contents of the final page.
     pub results: ResultsShown,
-    /// The person is asked why they stop the clock.
+    /// Whether participants must give a reason when they stop the clock.
     pub pause_reason: bool,
 }
 
@@ -209,15 +208,15 @@ impl Default for SessionPage {
     }
 }
 
-/// What is recorded.
+/// Recording settings.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RecordPage {
-    /// Kinds of activity that are left out.
+    /// Kinds of activity that are not recorded.
     pub leave_out: Vec<String>,
-    /// What is kept of notes and answers in words.
+    /// How much of notes and text answers is recorded.
     pub free_text: FreeText,
-    /// What is kept of texts that were edited.
+    /// How much of edited texts is recorded.
     pub drafts: DraftsKept,
 }
 
@@ -227,7 +226,7 @@ impl Default for RecordPage {
     }
 }
 
-/// The keys of the table `integrity`, which were removed.
+/// The removed keys of the table `integrity`.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct RemovedSettings {
@@ -235,11 +234,11 @@ struct RemovedSettings {
     code_words: Option<bool>,
 }
 
-/// What opens what participants do not get.
+/// The experimenter's access to functions that participants do not have.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct AccessPage {
-    /// Salted digest of the experimenter's code, as `novamind study code` prints it; none: no code is asked for.
+    /// Salted digest of the experimenter's code, as `novamind study code` prints it; `None` if the study has no code.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub code: Option<CodeDigest>,
 }
@@ -250,10 +249,10 @@ pub struct AccessPage {
 pub struct CodeDigest(String);
 
 impl CodeDigest {
-    /// Rounds of hashing, so that trying codes takes time.
+    /// Rounds of hashing, which slow down guessing.
     const ROUNDS: u32 = 100_000;
 
-    /// The digest of a code under a salt.
+    /// Computes the digest of a code with a salt.
     pub fn of(code: &str, salt: &str) -> CodeDigest {
         let mut digest =
             blake3::derive_key("novamind experimenter code", format!("{salt}:{code}").as_bytes());
@@ -264,12 +263,12 @@ impl CodeDigest {
         CodeDigest(format!("{salt}:{digits}"))
     }
 
-    /// Whether a code is the one.
+    /// Whether a code matches the digest.
     pub fn opens(&self, code: &str) -> bool {
         self.0.split_once(':').is_some_and(|(salt, _)| CodeDigest::of(code, salt) == *self)
     }
 
-    /// As the file has it.
+    /// Returns `salt:digest`, as in the file.
     pub fn as_text(&self) -> &str {
         &self.0
     }
@@ -279,7 +278,7 @@ impl Study {
     /// Reads the study in a folder.
     ///
     /// # Errors
-    /// A file is missing or wrong; the error names file, line and key, and what would be right.
+    /// Fails if a file is missing or invalid. The error names file, line and key, and what is expected.
     pub fn read(folder: &Path) -> Result<Study, RunError> {
         let path = folder.join(STUDY_FILE);
         let text = std::fs::read_to_string(&path).map_err(RunError::io(&path))?;
@@ -293,7 +292,7 @@ impl Study {
         let assignment = Assignment::read(folder)?;
         if assignment.is_none() && protocol.seeds.plan != SeedPlan::One {
             let problem =
-                "assignment.csv is missing: this plan gives seeds by it. `novamind study assign` writes one";
+                "this plan needs assignment.csv, which is missing. Create it with `novamind study assign`";
             return Err(
                 ParameterError::of_key(&path.display().to_string(), &text, "seeds.plan", problem).into()
             );
@@ -320,13 +319,13 @@ impl Study {
         shortened(&self.digest)
     }
 
-    /// What says whether a word is the experimenter's code; none where the protocol has no code.
+    /// Returns a check of the experimenter's code, or `None` if the protocol has no code.
     pub fn code_check(&self) -> Option<CodeCheck> {
         let digest = self.protocol.access.code.clone()?;
         Some(Arc::new(move |code: &str| digest.opens(code)))
     }
 
-    /// By which rules its sessions are played.
+    /// Returns the rules of the study's sessions.
     pub fn rules(&self) -> SessionRules {
         let Protocol { session, record, limits, .. } = &self.protocol;
         SessionRules {
@@ -359,15 +358,15 @@ impl Protocol {
         .collect()
     }
 
-    /// Whether a code opens what participants do not get. Without a code in the protocol nothing does.
+    /// Whether a code gives the experimenter's access. Returns `false` if the protocol has no code.
     pub fn opens_with(&self, code: Option<&str>) -> bool {
         matches!((&self.access.code, code), (Some(digest), Some(code)) if digest.opens(code))
     }
 
-    /// Reads the text of a file.
+    /// Parses the text of `study.toml`; `source` is its name in errors.
     ///
     /// # Errors
-    /// The first thing that is wrong, with its line and key.
+    /// Returns the first problem with its line and key.
     pub fn read(source: &str, text: &str) -> Result<Protocol, ParameterError> {
         let protocol: Protocol =
             toml::from_str(text).map_err(|error| ParameterError::of_toml(source, text, &error))?;
@@ -381,7 +380,7 @@ impl Protocol {
             (1..=40).contains(&name.len()) && letters
         };
         if !fits(&self.name) {
-            return Err(("name", "a name has 1 to 40 letters, digits and hyphens".to_owned()));
+            return Err(("name", "a name must have 1 to 40 letters, digits and hyphens".to_owned()));
         }
         self.world.days.map_or(Ok(()), check_days).map_err(|problem| ("world.days", problem))?;
         self.world.cash.map_or(Ok(()), check_cash).map_err(|problem| ("world.cash", problem))?;
@@ -399,8 +398,10 @@ impl Protocol {
         if self.practice.offer != PracticeOffer::None
             && of_session.into_iter().any(|seed| *seed == self.practice.seed)
         {
-            let problem =
-                format!("{} is also the seed of a session: practice needs its own", self.practice.seed);
+            let problem = format!(
+                "{} is also the seed of a session. Choose another seed for the practice",
+                self.practice.seed
+            );
             return Err(("practice.seed", problem));
         }
         let unknown = self.record.leave_out.iter().find(|kind| !Activity::KINDS.contains(&kind.as_str()));
@@ -408,21 +409,21 @@ impl Protocol {
             let known = Activity::KINDS.join(", ");
             return Err((
                 "record.leave_out",
-                format!("no kind of activity is called {kind}; the kinds are {known}"),
+                format!("unknown kind of activity {kind}; the kinds are {known}"),
             ));
         }
         const NEEDED: [&str; 5] = ["session", "clock", "limit", "answer", "question"];
         if let Some(kind) = self.record.leave_out.iter().find(|kind| NEEDED.contains(&kind.as_str())) {
             return Err((
                 "record.leave_out",
-                format!("{kind} cannot be left out: times and answers rest on it"),
+                format!("{kind} cannot be left out: times and answers depend on it"),
             ));
         }
         self.voice.as_ref().map_or(Ok(()), ModelSettings::check).map_err(of_voice)?;
         self.limits.check_warning()?;
         let limits = [self.limits.week_minutes, self.limits.session_minutes, self.limits.study_minutes];
         if limits.contains(&Some(0)) {
-            return Err(("limits", "a limit has at least 1 minute".to_owned()));
+            return Err(("limits", "a limit must be at least 1 minute".to_owned()));
         }
         Ok(())
     }
@@ -433,7 +434,7 @@ pub(crate) fn shortened(digest: &str) -> &str {
     digest.get(..16).unwrap_or(digest)
 }
 
-/// A problem with a key of the table `voice`.
+/// Qualifies the key of a problem with the table `voice`.
 fn of_voice((key, problem): (&'static str, String)) -> (&'static str, String) {
     let key = match key {
         "endpoint" => "voice.endpoint",
@@ -454,7 +455,7 @@ fn read_if_there(path: &Path) -> Result<Option<String>, RunError> {
     }
 }
 
-/// Files of questions by their names, with their texts.
+/// Reads the question files, sorted by name.
 fn question_files(folder: &Path) -> Result<Vec<(PathBuf, String)>, RunError> {
     let questions = folder.join("questions");
     let entries = match std::fs::read_dir(&questions) {
@@ -485,10 +486,10 @@ mod tests {
         };
         let text = "name = \"pilot\"\ntitle = \"A company\"\n[seeds]\nseed = 7\n";
         let plain = read(text);
-        // Runs carry this digest: it must be the same in every build.
+        // Runs record this digest, so it must be the same in every build.
         assert_eq!(plain.digest, "9c6e07e6aa3cdcbd5263b75c588fa133f240e81f2c415b579128125f39ce69a1");
         assert!(plain.protocol.removed_settings().is_empty());
-        // A file with settings that were removed is read as before.
+        // A file with removed settings keeps its digest and its rules.
         let old = read(&format!("{text}[integrity]\nwitness = \"/mnt/lab\"\ncode_words = true\n"));
         assert_eq!(old.digest, "9ae42916627507b38d81028fd909f77262e5aad500f01ac8d7a77a6eecbcec06");
         assert_eq!((old.rules(), old.protocol.removed_settings().len()), (plain.rules(), 2));

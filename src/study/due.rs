@@ -1,4 +1,4 @@
-//! Which questions of a study are due in a run, and recording them with their answers.
+//! The questions of a study that are due in a run, and the record of their answers.
 
 use serde_json::{Value, json};
 
@@ -13,18 +13,18 @@ use novamind_session::Session;
 pub struct DueQuestion {
     /// Name of its questionnaire.
     pub questionnaire: String,
-    /// What stands above it.
+    /// Heading of the questionnaire.
     pub title: String,
-    /// What stands before the first question of it.
+    /// Text before the first question of the questionnaire.
     pub introduction: String,
-    /// When it is asked.
+    /// Occasion: `before`, `week N`, `break N` or `end`.
     pub occasion: String,
     /// The question.
     pub question: Question,
 }
 
 impl Study {
-    /// The questions that are due in a run, in their order.
+    /// Returns the questions that are due in a run, in order. A practice run has none.
     pub fn due(&self, session: &Session) -> Vec<DueQuestion> {
         let is_session = session.manifest().study.as_ref().is_some_and(|stamp| !stamp.practice);
         if !is_session {
@@ -53,7 +53,7 @@ impl Study {
     }
 }
 
-/// When a questionnaire was to be asked by now.
+/// Returns the occasions on which a questionnaire has become due.
 fn occasions(questionnaire: &Questionnaire, session: &Session) -> Vec<String> {
     let weeks = session.weeks().len() as u32;
     match questionnaire.when {
@@ -84,7 +84,8 @@ impl DueQuestion {
         }));
     }
 
-    /// Records an answer, null if the question was passed over. Words are masked if the rules require it.
+    /// Records an answer, null if the question was skipped. Free text is masked if the rules require it. `for_ms` is the time
+    /// for which the question was shown.
     pub fn note_answer(&self, session: &mut Session, value: &Value, for_ms: u64, changes: u32) {
         let masked = session.rules().free_text == FreeText::Masked && self.question.form.is_in_words();
         let kept = match value.as_str().filter(|_| masked) {

@@ -1,4 +1,4 @@
-//! The runs of all machines of a study: found in folders and archives, each once, in its latest state.
+//! Finds the runs of all machines of a study in folders and archives, each once and in its latest state.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -15,39 +15,40 @@ use novamind_record::folder::manifest::Manifest;
 use novamind_record::trajectory::Trajectory;
 use novamind_session::{LabPublicKey, import_run, is_archive_name, lines_afterwards};
 
-/// How deep folders are searched.
+/// Maximum depth of the search for runs.
 const DEEPEST: usize = 12;
 
-/// Something that whoever collects a study should know.
+/// A note on a collection, for the experimenter.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum CollectNote {
     /// A run or archive that cannot be read.
     Unreadable {
-        /// Where it lies.
+        /// Its path.
         path: PathBuf,
-        /// Why.
+        /// Reason.
         problem: String,
     },
-    /// An earlier state of a run, or the same once more: the latest is taken.
+    /// An earlier state or a copy of a run. The latest state is used.
     Superseded {
         /// Run.
         run: String,
-        /// Where the earlier state lies.
+        /// Path of the earlier state.
         path: PathBuf,
-        /// Where the later one lies.
+        /// Path of the later state.
         by: PathBuf,
     },
-    /// Two records of one name of which neither goes on from the other: both are kept apart, neither is in the tables.
+    /// Two records of one run of which neither continues the other. Both are kept in a separate folder, and neither is in
+    /// the tables.
     Conflict {
         /// Run.
         run: String,
-        /// Where they lie.
+        /// Their paths.
         paths: Vec<PathBuf>,
         /// First line in which they differ, from 1.
         line: usize,
     },
-    /// Sessions of one study under one label: two people, or one who played twice.
+    /// Several sessions of one study under one label: two participants, or one who played twice.
     SharedLabel {
         /// Label.
         label: String,
@@ -58,10 +59,10 @@ pub enum CollectNote {
     Missing {
         /// Label.
         label: String,
-        /// What the machines say of the label last.
+        /// The last visit of the label on any machine.
         last_visit: Option<VisitEvent>,
     },
-    /// A session of the label exists, under another version of the protocol.
+    /// A label has a session under another version of the protocol only.
     OtherProtocol {
         /// Label.
         label: String,
@@ -70,7 +71,7 @@ pub enum CollectNote {
         /// Digest of the protocol of the run.
         digest: String,
     },
-    /// A run was given another label.
+    /// A run has another label in the tables.
     Relabelled {
         /// Run.
         run: String,
@@ -79,29 +80,29 @@ pub enum CollectNote {
         /// Label in the tables.
         to: String,
     },
-    /// An archive that the lab whose public key lies in the folder of the study has not signed.
+    /// An archive that is not signed by the lab whose public key is in the folder of the study.
     NotSigned {
-        /// Where it lies.
+        /// Its path.
         path: PathBuf,
-        /// Fingerprint of the key that signed it; none where none did.
+        /// Fingerprint of the key that signed it; `None` if it is not signed.
         by: Option<String>,
     },
-    /// A line of the mapping file that names no run.
+    /// A line of the mapping file whose run was not found.
     UnknownRun {
         /// Run.
         run: String,
     },
-    /// A run that could not be simulated again as its lines say.
+    /// A run whose simulation does not reproduce its record.
     Unverified {
         /// Run.
         run: String,
-        /// Why.
+        /// Reason.
         problem: String,
     },
 }
 
 impl CollectNote {
-    /// Whether somebody has to look into it.
+    /// Whether the experimenter has to act on it.
     pub fn needs_attention(&self) -> bool {
         !matches!(self, CollectNote::Superseded { .. } | CollectNote::Relabelled { .. })
     }
@@ -111,22 +112,17 @@ impl fmt::Display for CollectNote {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             CollectNote::Unreadable { path, problem } => {
-                write!(out, "not taken: {}: {problem}", path.display())
+                write!(out, "not collected: {}: {problem}", path.display())
             }
             CollectNote::Superseded { run, path, by } => {
-                write!(
-                    out,
-                    "run {run}: {} is an earlier state of {}, or the same",
-                    path.display(),
-                    by.display()
-                )
+                write!(out, "run {run}: {} is an earlier state or a copy of {}", path.display(), by.display())
             }
             CollectNote::Conflict { run, paths, line } => {
                 let paths: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
                 write!(
                     out,
-                    "conflict: run {run} has two records that differ from line {line} on: {}; both are kept in conflicts, \
-                     neither is in the tables",
+                    "conflict: run {run} has two records that differ from line {line}: {}; both are in conflicts, neither is \
+                     in the tables",
                     paths.join(" and ")
                 )
             }
@@ -134,11 +130,7 @@ impl fmt::Display for CollectNote {
                 write!(out, "not signed: {}", path.display())
             }
             CollectNote::NotSigned { path, by: Some(key) } => {
-                write!(
-                    out,
-                    "not signed by the lab: {} carries the signature of the key {key}",
-                    path.display()
-                )
+                write!(out, "not signed by the lab: {} is signed with the key {key}", path.display())
             }
             CollectNote::SharedLabel { label, runs } => {
                 write!(out, "label {label} has {} sessions: runs {}", runs.len(), runs.join(", "))
@@ -160,21 +152,21 @@ impl fmt::Display for CollectNote {
             CollectNote::UnknownRun { run } => {
                 write!(out, "the mapping names run {run}, which was not found")
             }
-            CollectNote::Unverified { run, problem } => write!(out, "run {run} is not taken: {problem}"),
+            CollectNote::Unverified { run, problem } => write!(out, "run {run} is not collected: {problem}"),
         }
     }
 }
 
-/// A record of a run in one place.
+/// A record of a run in one folder or archive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FoundRun {
-    /// What it is.
+    /// Manifest.
     pub manifest: Manifest,
     /// Folder of its files.
     pub folder: PathBuf,
-    /// Where it was found: that folder, or an archive.
+    /// The folder or archive in which it was found.
     pub source: PathBuf,
-    /// Hashes of its lines, those of what was done after its end with them.
+    /// Hashes of its lines, including those of `afterwards.jsonl`.
     hashes: Vec<String>,
 }
 
@@ -188,26 +180,26 @@ impl FoundRun {
         Ok(FoundRun { manifest, folder: folder.to_owned(), source: source.to_owned(), hashes })
     }
 
-    /// Whether it is this record or an earlier state of it.
+    /// Whether this record is an earlier state or a copy of `other`.
     fn is_beginning_of(&self, other: &FoundRun) -> bool {
         other.hashes.starts_with(&self.hashes)
     }
 }
 
-/// What was found.
+/// The result of a search for runs.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Gathered {
-    /// Runs in their latest state, by creation.
+    /// Runs in their latest state, sorted by creation.
     pub runs: Vec<FoundRun>,
     /// Records that contradict each other, by run.
     pub conflicts: BTreeMap<String, Vec<FoundRun>>,
-    /// What should be known.
+    /// Notes for the experimenter.
     pub notes: Vec<CollectNote>,
-    /// What machines say of who came, by moment; a line that stands in several copies of a list once.
+    /// Visits on all machines, sorted by time; a line that several copies of a list have is included once.
     pub visits: Vec<FoundVisit>,
 }
 
-/// A line of a list of visits, and the folder of runs in which the list lies.
+/// A line of a list of visits with the folder of runs that contains the list.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FoundVisit {
     /// The line.
@@ -216,8 +208,8 @@ pub struct FoundVisit {
     pub folder: PathBuf,
 }
 
-/// Finds all runs below some folders and in archives there. Archives are unpacked into `workshop`; `without` is not searched.
-/// Where there is a key of a lab, archives that it has not signed are told.
+/// Finds all runs and archives below the given paths. Archives are unpacked into `workshop`; `without` is not searched. If the
+/// study has the public key of a lab, archives that the lab has not signed are noted.
 pub fn gather(sources: &[PathBuf], workshop: &Path, without: &Path, lab: Option<&LabPublicKey>) -> Gathered {
     let mut gathered = Gathered::default();
     let without = without.canonicalize().unwrap_or_else(|_| without.to_owned());
@@ -265,8 +257,8 @@ pub fn gather(sources: &[PathBuf], workshop: &Path, without: &Path, lab: Option<
     gathered
 }
 
-/// Returns a note for each place of an assignment without a session. `labels` are those with a session, `others` the run
-/// and its digest by label of runs under another protocol.
+/// Returns a note for each place of an assignment without a session. `labels` have a session; `others` maps a label to its
+/// run under another protocol and the digest of that protocol.
 pub fn missing_places(
     assignment: &Assignment,
     labels: &BTreeSet<String>,
@@ -289,17 +281,17 @@ fn unpacked(archive: &Path, folder: &Path) -> Result<(FoundRun, Option<LabPublic
     Ok((FoundRun::read(&folder.join(&seal.run), archive)?, signer))
 }
 
-/// What lies below some paths.
+/// The contents of the searched paths.
 #[derive(Default)]
 struct Found {
     /// Folders of runs.
     folders: BTreeSet<PathBuf>,
     archives: BTreeSet<PathBuf>,
-    /// Lines of lists of visits, with the folder of the first list that has them.
+    /// Lines of lists of visits, each with the folder of the first list that contains it.
     visits: BTreeMap<VisitLine, PathBuf>,
 }
 
-/// Folders of runs, archives and lists of visits below a path. Links are not followed.
+/// Searches a path for run folders, archives and lists of visits. Does not follow links.
 fn look(path: &Path, without: &Path, depth: usize, found: &mut Found) -> std::io::Result<()> {
     let path = path.canonicalize()?;
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
@@ -324,7 +316,7 @@ fn look(path: &Path, without: &Path, depth: usize, found: &mut Found) -> std::io
     for entry in std::fs::read_dir(&path)? {
         let entry = entry?;
         let name = entry.file_name();
-        // What the program keeps for a person lies below `.local` where nothing else is said.
+        // The default folder of runs is below `.local`.
         let is_hidden = name.to_string_lossy().starts_with('.') && name != ".local";
         if !is_hidden && !entry.file_type()?.is_symlink() {
             look(&entry.path(), without, depth - 1, found)?;
@@ -333,7 +325,7 @@ fn look(path: &Path, without: &Path, depth: usize, found: &mut Found) -> std::io
     Ok(())
 }
 
-/// Of several records of one run the latest, if all others are beginnings of it.
+/// Keeps the latest of several records of one run if it continues all others. Otherwise notes a conflict.
 fn settle(run: String, mut records: Vec<FoundRun>, gathered: &mut Gathered) {
     records.sort_by(|one, other| (other.hashes.len(), &one.source).cmp(&(one.hashes.len(), &other.source)));
     let mut apart: Vec<FoundRun> = Vec::new();
@@ -357,7 +349,7 @@ fn settle(run: String, mut records: Vec<FoundRun>, gathered: &mut Gathered) {
     gathered.conflicts.insert(run, apart);
 }
 
-/// Labels with several sessions of one study; practice is none.
+/// Returns a note for each label with several sessions of one study. Practice runs do not count.
 fn shared_labels(runs: &[FoundRun]) -> Vec<CollectNote> {
     let mut by_label: BTreeMap<(&str, &str), Vec<String>> = BTreeMap::new();
     for run in runs {

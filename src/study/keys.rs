@@ -1,6 +1,6 @@
-//! The keys of a study: `lab.key` signs archives, `lab.pub` tells who signed, `seal.key` seals snapshots.
+//! The keys of a study: `lab.key` signs archives, `lab.pub` verifies signatures, `seal.key` seals snapshots.
 //!
-//! `seal.key` follows from `lab.key`, and nothing leads back: a machine that participants use needs it, and cannot sign.
+//! `seal.key` is derived from `lab.key`, not the other way round: a participant's machine has `seal.key` and cannot sign.
 
 use std::path::{Path, PathBuf};
 
@@ -14,19 +14,19 @@ pub const LAB_PUBLIC_KEY_FILE: &str = "lab.pub";
 /// File of the key that seals snapshots.
 pub const SEAL_KEY_FILE: &str = "seal.key";
 
-/// Makes the keys of a study that its folder lacks; a `lab.key` that is there stays, and the others follow from it. Returns
-/// the public key and the files that were written.
+/// Creates the missing keys of a study. An existing `lab.key` is kept, and the others are derived from it. Returns the public
+/// key and the files that were written.
 ///
 /// # Errors
-/// The system gives no random numbers; a file cannot be read or written; `lab.pub` or `seal.key` is there without the
-/// `lab.key` that it follows from.
+/// Fails if the system provides no random numbers, if a file cannot be read or written, or if `lab.pub` or `seal.key` exists
+/// without `lab.key`.
 pub fn make_keys(folder: &Path) -> Result<(LabPublicKey, Vec<PathBuf>), RunError> {
     let [own, public, seal] =
         [LAB_KEY_FILE, LAB_PUBLIC_KEY_FILE, SEAL_KEY_FILE].map(|name| folder.join(name));
     let orphan = [&public, &seal].into_iter().find(|path| path.exists()).filter(|_| !own.exists());
     if let Some(path) = orphan {
         return Err(RunError::NotPossible(format!(
-            "{} follows from a {LAB_KEY_FILE} that is not in this folder: put it there, or remove {0}; nothing was written",
+            "{} was derived from a {LAB_KEY_FILE} that is not in this folder. Copy it here, or remove {0}; nothing was written",
             path.display()
         )));
     }
@@ -50,10 +50,10 @@ pub fn make_keys(folder: &Path) -> Result<(LabPublicKey, Vec<PathBuf>), RunError
     Ok((key.public(), written))
 }
 
-/// What seals the snapshots of a study besides the runs: its `seal.key`; the runs alone where there is none.
+/// Returns the key that seals a study's snapshots: its `seal.key`, or the default key if there is none.
 ///
 /// # Errors
-/// It cannot be read, or is no key.
+/// Fails if the file cannot be read or is not a key.
 pub fn seal_key_of(folder: &Path) -> Result<SealKey, RunError> {
     let file = folder.join(SEAL_KEY_FILE);
     if !file.exists() {
@@ -62,19 +62,19 @@ pub fn seal_key_of(folder: &Path) -> Result<SealKey, RunError> {
     read_seal_key(&file).map(|secret| SealKey::of_study(&secret))
 }
 
-/// The key of the lab in the folder of a study, if it is there.
+/// Returns the lab key in the folder of a study, if there is one.
 ///
 /// # Errors
-/// It cannot be read, or is no key.
+/// Fails if the file cannot be read or is not a key.
 pub fn lab_key_of(folder: &Path) -> Result<Option<LabKey>, RunError> {
     let file = folder.join(LAB_KEY_FILE);
     file.exists().then(|| LabKey::read(&file)).transpose()
 }
 
-/// The public key of the lab in the folder of a study, if it is there.
+/// Returns the public key of the lab in the folder of a study, if there is one.
 ///
 /// # Errors
-/// It cannot be read, or is no key.
+/// Fails if the file cannot be read or is not a key.
 pub fn lab_public_key_of(folder: &Path) -> Result<Option<LabPublicKey>, RunError> {
     let file = folder.join(LAB_PUBLIC_KEY_FILE);
     file.exists().then(|| LabPublicKey::read(&file)).transpose()
@@ -97,12 +97,12 @@ mod tests {
         assert_eq!((again, written), (public, vec![folder.path().join(SEAL_KEY_FILE)]));
         assert!(seal_key_of(folder.path()).expect("a key") == seal);
         assert_eq!(lab_public_key_of(folder.path()).expect("a key"), Some(public));
-        // Nobody makes another lab.key beside what an earlier one has left.
+        // A new lab.key would not match the files of an earlier one.
         std::fs::remove_file(folder.path().join(LAB_KEY_FILE)).expect("gone");
         let problem = make_keys(folder.path()).expect_err("the private key is elsewhere").to_string();
-        assert!(problem.contains("lab.pub follows from a lab.key"), "{problem}");
+        assert!(problem.contains("lab.pub was derived from a lab.key"), "{problem}");
         assert!(lab_key_of(folder.path()).expect("none").is_none());
         std::fs::write(folder.path().join(SEAL_KEY_FILE), "seal").expect("written");
-        assert!(seal_key_of(folder.path()).is_err(), "a damaged key is told");
+        assert!(seal_key_of(folder.path()).is_err(), "a damaged key is an error");
     }
 }

@@ -1,4 +1,4 @@
-//! Studies with people: what an experimenter lays down, the way of a participant through it, and what of it stands in a run.
+//! Studies with people: the protocol, a participant's steps through it, collection of the runs, and the audit.
 
 mod assignment;
 mod audit;

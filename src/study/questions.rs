@@ -7,24 +7,24 @@ use serde_json::{Value, json};
 
 use novamind_world::params::ParameterError;
 
-/// Questions that are asked together.
+/// Questions that are asked on one page.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Questionnaire {
-    /// Name: that of its file.
+    /// Name of its file without extension.
     #[serde(skip)]
     pub name: String,
-    /// What stands above the questions.
+    /// Heading.
     pub title: String,
-    /// A text before the first question.
+    /// Text before the first question.
     #[serde(default)]
     pub introduction: String,
     /// When it is asked.
     pub when: Moment,
-    /// After which weeks, with `when = "weeks"`.
+    /// Weeks after which it is asked, with `when = "weeks"`.
     #[serde(default)]
     pub weeks: Vec<u32>,
-    /// Its questions.
+    /// Questions in order.
     #[serde(rename = "question")]
     pub questions: Vec<Question>,
 }
@@ -37,9 +37,9 @@ pub enum Moment {
     Before,
     /// After certain weeks.
     Weeks,
-    /// When the person goes on after having stopped the clock or left.
+    /// When the participant continues after stopping the clock or leaving.
     Break,
-    /// Once the session is over.
+    /// After the session has ended.
     End,
 }
 
@@ -48,37 +48,37 @@ pub enum Moment {
 pub struct Question {
     /// Name: letters, digits, underscores.
     pub id: String,
-    /// What is asked.
+    /// Text of the question.
     pub text: String,
-    /// How it is answered.
+    /// Form of the answer.
     #[serde(flatten)]
     pub form: Form,
-    /// It cannot be passed over.
+    /// Whether the question must be answered.
     #[serde(default)]
     pub required: bool,
 }
 
-/// How a question is answered.
+/// Form of an answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "form", rename_all = "lowercase")]
 pub enum Form {
     /// A point of a scale.
     Likert {
-        /// Points, 2 to 11.
+        /// Number of points, 2 to 11.
         points: u32,
-        /// What the first point means.
+        /// Label of the first point.
         #[serde(default)]
         low: String,
-        /// What the last point means.
+        /// Label of the last point.
         #[serde(default)]
         high: String,
     },
     /// A number.
     Number {
-        /// Smallest.
+        /// Minimum.
         #[serde(default)]
         min: Option<f64>,
-        /// Largest.
+        /// Maximum.
         #[serde(default)]
         max: Option<f64>,
         /// Unit.
@@ -87,23 +87,23 @@ pub enum Form {
     },
     /// One of some options, or several.
     Choice {
-        /// What can be chosen.
+        /// Options.
         options: Vec<String>,
-        /// More than one.
+        /// Whether several options can be chosen.
         #[serde(default)]
         several: bool,
     },
-    /// Words.
+    /// Free text.
     Text {
-        /// Most characters.
+        /// Maximum number of characters.
         #[serde(default = "most_letters")]
         most: u32,
     },
-    /// One of some options, one of which is right: whether the person reads.
+    /// An attention check: one option is the expected answer.
     Attention {
-        /// What can be chosen.
+        /// Options.
         options: Vec<String>,
-        /// The right one.
+        /// The expected answer.
         expected: String,
     },
 }
@@ -113,7 +113,7 @@ fn most_letters() -> u32 {
 }
 
 impl Form {
-    /// Word as records write it.
+    /// Returns the identifier in records.
     pub fn id(&self) -> &'static str {
         match self {
             Form::Likert { .. } => "likert",
@@ -124,7 +124,7 @@ impl Form {
         }
     }
 
-    /// What can be chosen, as it is shown.
+    /// Returns the options as they are shown; empty for numbers and text.
     pub fn options(&self) -> Vec<String> {
         match self {
             Form::Likert { points, .. } => (1..=*points).map(|point| point.to_string()).collect(),
@@ -133,10 +133,10 @@ impl Form {
         }
     }
 
-    /// The value of an answer as it was typed.
+    /// Parses a typed answer.
     ///
     /// # Errors
-    /// What would be an answer.
+    /// Returns a description of a valid answer.
     pub fn value(&self, typed: &str) -> Result<Value, String> {
         let typed = typed.trim();
         match self {
@@ -178,12 +178,12 @@ impl Form {
         }
     }
 
-    /// Whether it is answered in the person's own words.
+    /// Whether the answer is free text.
     pub fn is_in_words(&self) -> bool {
         matches!(self, Form::Text { .. })
     }
 
-    /// Whether an answer is the expected one; none where none is expected.
+    /// Whether an attention check was answered as expected; `None` for other forms.
     pub fn is_as_expected(&self, value: &Value) -> Option<bool> {
         match self {
             Form::Attention { expected, .. } => Some(value.as_str() == Some(expected)),
@@ -191,7 +191,6 @@ impl Form {
         }
     }
 
-    /// Keys that a question of this form can have.
     fn keys(&self) -> &'static [&'static str] {
         match self {
             Form::Likert { .. } => &["points", "low", "high"],
@@ -211,27 +210,27 @@ impl Form {
                 Err(format!("min {min} is above max {max}"))
             }
             Form::Choice { options, .. } | Form::Attention { options, .. } if options.len() < 2 => {
-                Err("there have to be at least two options".to_owned())
+                Err("at least two options are required".to_owned())
             }
             Form::Attention { options, expected } if !options.contains(expected) => {
-                Err(format!("the expected answer {expected:?} is none of the options"))
+                Err(format!("the expected answer {expected:?} is not one of the options"))
             }
             _ => Ok(()),
         }
     }
 }
 
-/// An option by its number from 1, or by its words.
+/// Finds an option by its number, from 1, or by its text.
 fn chosen<'a>(options: &'a [String], typed: &str) -> Option<&'a String> {
     let numbered = typed.parse::<usize>().ok().and_then(|number| options.get(number.checked_sub(1)?));
     numbered.or_else(|| options.iter().find(|option| option.eq_ignore_ascii_case(typed)))
 }
 
 impl Questionnaire {
-    /// Reads the text of a file.
+    /// Parses the text of a questionnaire file.
     ///
     /// # Errors
-    /// The first thing that is wrong, with its line and key.
+    /// Returns the first problem with its line and key.
     pub fn read(path: &Path, text: &str) -> Result<Questionnaire, ParameterError> {
         let source = path.display().to_string();
         let read: Questionnaire =
@@ -243,7 +242,7 @@ impl Questionnaire {
                 &source,
                 text,
                 "weeks",
-                "weeks = [N, …] stands with when = \"weeks\" and only there",
+                "weeks = [N, …] is required with when = \"weeks\" and not allowed otherwise",
             ));
         }
         let tables = text.parse::<toml::Table>().unwrap_or_default();
@@ -257,14 +256,19 @@ impl Questionnaire {
                 .flat_map(toml::Table::keys)
                 .find(|key| !own.contains(&key.as_str()));
             if let Some(key) = unknown {
-                let problem =
-                    format!("{}: {key} is no key of this form; its keys are {}", question.id, own.join(", "));
+                let problem = format!(
+                    "{}: {key} is not a key of this form; its keys are {}",
+                    question.id,
+                    own.join(", ")
+                );
                 return Err(ParameterError::of_key(&source, text, key, problem));
             }
             let fits = |letter: u8| letter.is_ascii_alphanumeric() || letter == b'_';
             if question.id.is_empty() || !question.id.bytes().all(fits) {
-                let problem =
-                    format!("{:?} is no name of a question: letters, digits, underscores", question.id);
+                let problem = format!(
+                    "{:?} is not a valid name of a question: use letters, digits, underscores",
+                    question.id
+                );
                 return Err(ParameterError::of_key(&source, text, "question", problem));
             }
             if !known.insert(&question.id) {
@@ -272,7 +276,7 @@ impl Questionnaire {
                     &source,
                     text,
                     "question",
-                    format!("{} stands here twice", question.id),
+                    format!("{} occurs twice", question.id),
                 ));
             }
             let problem = |problem: String| {
@@ -283,7 +287,7 @@ impl Questionnaire {
         Ok(questionnaire)
     }
 
-    /// Whether it is asked after a week, counted from 1.
+    /// Whether the questionnaire is asked after a week, counted from 1.
     pub fn is_due_after(&self, week: u32) -> bool {
         self.when == Moment::Weeks && self.weeks.contains(&week)
     }
@@ -348,11 +352,11 @@ min = 0.0
     fn wrong_questions_are_named() {
         for (from, to, part) in [
             ("points = 7", "points = 1", "2 to 11"),
-            ("expected = \"second\"", "expected = \"third\"", "none of the options"),
+            ("expected = \"second\"", "expected = \"third\"", "not one of the options"),
             ("weeks = [4, 12]", "", "weeks"),
             ("id = \"check\"", "id = \"effort\"", "twice"),
             ("when = \"weeks\"", "when = \"sometimes\"", "line 3"),
-            ("low = \"easy\"", "lowest = \"easy\"", "lowest is no key of this form"),
+            ("low = \"easy\"", "lowest = \"easy\"", "lowest is not a key of this form"),
         ] {
             let error = read(&EFFORT.replace(from, to)).expect_err(to);
             assert!(error.contains(part), "{error}");

@@ -1,4 +1,4 @@
-//! What an experimenter notes about a session: `remarks.jsonl` in the folder of runs, lines of their own.
+//! The experimenter's remarks on sessions: `remarks.jsonl` in the folder of runs.
 
 use std::path::Path;
 
@@ -12,21 +12,21 @@ use novamind_record::files::read_regular_text;
 /// Name of the file.
 pub const REMARKS: &str = "remarks.jsonl";
 
-/// A remark.
+/// A remark on a participant.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Remark {
-    /// When, RFC 3339.
+    /// Time, RFC 3339.
     pub at: String,
-    /// Whom it is about: a label.
+    /// Label of the participant.
     pub participant: String,
-    /// What the experimenter says.
+    /// Text.
     pub text: String,
 }
 
-/// Writes a remark.
+/// Appends a remark.
 ///
 /// # Errors
-/// The file cannot be written.
+/// Fails if the file cannot be written.
 pub fn write_remark(runs: &Path, participant: &str, text: &str) -> Result<(), RunError> {
     let path = runs.join(REMARKS);
     let remark = Remark { at: now(), participant: participant.to_owned(), text: text.to_owned() };
@@ -34,7 +34,7 @@ pub fn write_remark(runs: &Path, participant: &str, text: &str) -> Result<(), Ru
     append_synced(&path, line.as_bytes())
 }
 
-/// The remarks of a folder of runs; lines that cannot be read are left out.
+/// Returns the remarks of a folder of runs. Skips lines that cannot be parsed.
 pub fn remarks(runs: &Path) -> Vec<Remark> {
     let text = read_regular_text(&runs.join(REMARKS));
     text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()

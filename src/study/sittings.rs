@@ -1,4 +1,4 @@
-//! The sessions of a study on a machine as they stand: for the experimenter who walks by.
+//! The current state of a study's sessions on a machine, for `study watch`.
 
 use std::path::Path;
 
@@ -13,16 +13,16 @@ use novamind_record::folder::runs::{all_run_folders, last_lines};
 use novamind_record::trajectory::record::{Activity, ClockEvent, Outcome, PresenceEvent};
 use novamind_record::trajectory::{Line, Record};
 
-/// A run of a study as it stands.
+/// The current state of a run of a study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Sitting {
     /// Label.
     pub participant: String,
     /// Run.
     pub run: String,
-    /// It is the practice.
+    /// Whether it is the practice run.
     pub practice: bool,
-    /// What the person is doing.
+    /// State of the participant.
     pub state: SittingState,
     /// Last simulated day.
     pub day: u32,
@@ -30,29 +30,29 @@ pub struct Sitting {
     pub days: u32,
     /// Seconds since the last line.
     pub quiet_seconds: f64,
-    /// What is wrong, as far as the record says so: the last refusal to save.
+    /// Problem in the record: damage, or the last failure to save.
     pub problems: Vec<String>,
 }
 
-/// What a person is doing.
+/// The state of a participant in a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SittingState {
     /// The run is being played.
     Plays,
-    /// It is open, and nobody has pressed a key for a while.
+    /// The run is open, and there was no input for a while.
     Idle,
     /// The clock is stopped.
     Paused,
-    /// The person has left it.
+    /// The participant has left the run.
     Left,
-    /// The program ended without leaving it.
+    /// The program ended without closing the run.
     Stopped,
-    /// It is over.
+    /// The run has ended.
     Over,
 }
 
-/// Every run of a study in a machine's folder of runs, by label and run.
+/// Returns the runs of a study in a machine's folder of runs, sorted by label and run.
 pub fn sittings(study: &Study, runs: &Path) -> Vec<Sitting> {
     let folders = all_run_folders(runs);
     let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
@@ -87,7 +87,7 @@ fn sitting(folder: &Path, manifest: &Manifest) -> Sitting {
     }
 }
 
-/// The last refusal to save, unless something was saved since.
+/// Returns the last failure to save, unless a later call was saved.
 fn not_saved(lines: &[Line]) -> Option<String> {
     lines.iter().rev().find_map(|line| match &line.record {
         Record::Call(call) => Some(match &call.outcome {
@@ -116,7 +116,7 @@ fn state(lines: &[Line], locked: bool) -> SittingState {
         _ => None,
     });
     match said.unwrap_or(SittingState::Plays) {
-        // Nobody holds the run any more, and no line says that it was left.
+        // The run is not locked, and no line records that it was closed.
         SittingState::Plays | SittingState::Idle | SittingState::Paused if !locked => SittingState::Stopped,
         said => said,
     }

@@ -1,6 +1,6 @@
-//! A participant at a machine: what comes next for them, from the label to the thanks.
+//! The steps of a participant at a machine, from the label to the final page.
 //!
-//! Nothing is kept but the runs themselves and a list of visits: whoever leaves at any point goes on there.
+//! The next step is derived from the runs and the list of visits, so a participant can leave at any point and resume there.
 
 use std::path::{Path, PathBuf};
 
@@ -18,53 +18,53 @@ use novamind_record::mode::Mode;
 use novamind_record::stamp::StudyStamp;
 use novamind_session::{Access, NewRun, Session, Storage, StudyEntry};
 
-/// What is kept of a participant who does not agree.
-pub const DECLINED: &str = "You did not agree. Kept: your label, with when you came and that you did not agree. Nothing else was \
-                            recorded.";
+/// Message to a participant who declines consent.
+pub const DECLINED: &str = "You did not agree. Kept: your label, the time of your visit, and that you did not agree. Nothing else \
+                            was recorded.";
 
-/// A participant who has given a label.
+/// A participant who has entered a label.
 #[derive(Debug, Clone)]
 pub struct Visit {
     study: Study,
     label: String,
     place: Option<Place>,
-    /// Folder of this participant's runs.
+    /// Folder of the participant's runs.
     runs: PathBuf,
     log: VisitLog,
     refused_labels: u32,
 }
 
-/// A run of a study: what it is, and how far it has come.
+/// A run of a study with its manifest and progress.
 type OwnRun = (Manifest, RunSummary);
 
-/// What comes next for a participant.
+/// The next step of a participant.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NextStep {
-    /// They read a text and agree, or not.
+    /// Read the text and agree or decline.
     Consent(ConsentText),
-    /// They practise: in a run of theirs that is unfinished, or in a new one.
+    /// Play the practice run: the unfinished one, or a new one.
     Practice {
-        /// The unfinished run.
+        /// Unfinished run, if any.
         unfinished: Option<PathBuf>,
-        /// They may pass it over.
+        /// Whether the participant may skip it.
         may_pass: bool,
     },
-    /// They play: in a run of theirs that is unfinished, or in a new one.
+    /// Play the session: the unfinished run, or a new one.
     Session(Option<PathBuf>),
-    /// Questions at the end are open.
+    /// Answer the open questions at the end.
     Questions(PathBuf),
-    /// They have done everything.
+    /// The participant has completed the study.
     Thanks,
-    /// They have withdrawn; what was erased and what is kept, in words.
+    /// The participant has withdrawn. The text describes what was erased and what is kept.
     Withdrawn(String),
 }
 
 impl Visit {
-    /// Begins the visit of a participant; `runs` is the folder of all runs of the machine, `refused` how many labels were
-    /// refused before.
+    /// Starts the visit of a participant. `runs` is the machine's folder of runs, `refused` the number of labels that were
+    /// rejected before.
     ///
     /// # Errors
-    /// The label is none of the study's, or cannot name a folder. The refusal is in the list of visits.
+    /// Fails if the label is not in the assignment or cannot be the name of a folder. The list of visits records the rejection.
     pub fn begin(study: Study, runs: &Path, label: &str, refused: u32) -> Result<Visit, RunError> {
         let log = VisitLog::of(runs, &study);
         let label = label.trim();
@@ -73,7 +73,7 @@ impl Visit {
         let problem = match (&folder, &place) {
             (Err(problem), _) => Some(problem.clone()),
             (Ok(_), Some(None)) => {
-                Some(format!("{label} is no label of this study: check it, or ask the experimenter"))
+                Some(format!("{label} is not a label of this study. Check it, or ask the experimenter"))
             }
             _ => None,
         };
@@ -94,25 +94,25 @@ impl Visit {
         Ok(visit)
     }
 
-    /// The study.
+    /// Returns the study.
     pub fn study(&self) -> &Study {
         &self.study
     }
 
-    /// Label of the participant.
+    /// Returns the label of the participant.
     pub fn label(&self) -> &str {
         &self.label
     }
 
-    /// Folder of the participant's runs.
+    /// Returns the folder of the participant's runs.
     pub fn runs(&self) -> &Path {
         &self.runs
     }
 
-    /// What comes next.
+    /// Returns the next step.
     ///
     /// # Errors
-    /// The participant's runs cannot be read.
+    /// Fails if the participant's runs cannot be read.
     pub fn next(&self) -> Result<NextStep, RunError> {
         if Tombstone::is_in(&self.runs) {
             return Ok(NextStep::Withdrawn(self.kept_after_withdrawal()));
@@ -124,10 +124,10 @@ impl Visit {
         }
     }
 
-    /// What comes once the participant has agreed; their first run records that they have.
+    /// Returns the step after consent. The participant's first run records the consent.
     ///
     /// # Errors
-    /// As [`Visit::next`].
+    /// Fails like [`Visit::next`].
     pub fn after_consent(&self) -> Result<NextStep, RunError> {
         self.after(&self.own_runs()?)
     }
@@ -156,7 +156,7 @@ impl Visit {
         Ok(if open { NextStep::Questions(folder) } else { NextStep::Thanks })
     }
 
-    /// The new run of the practice or of the session.
+    /// Describes a new run of the practice or of the session.
     pub fn new_run(&self, practice: bool, agreed: Option<Agreed>) -> NewRun {
         let protocol = &self.study.protocol;
         let stamp = StudyStamp {
@@ -196,10 +196,10 @@ impl Visit {
         }
     }
 
-    /// Begins the practice or the session.
+    /// Starts the practice or the session in a new run.
     ///
     /// # Errors
-    /// As [`Session::create`].
+    /// Fails like [`Session::create`].
     pub fn begin_run(
         &self,
         practice: bool,
@@ -209,35 +209,35 @@ impl Visit {
         Session::create(self.new_run(practice, agreed), configuration)
     }
 
-    /// Opens a run of the participant to go on with it.
+    /// Opens a run of the participant to continue it.
     ///
     /// # Errors
-    /// As [`Session::open`].
+    /// Fails like [`Session::open`].
     pub fn open(&self, folder: &Path) -> Result<Session, RunError> {
         let mut session = Session::open_sealed(folder, Access::Write, true, self.study.seal_key.clone())?;
         session.join_model(self.study.protocol.voice.as_ref());
         Ok(session)
     }
 
-    /// Records that the participant has passed over the practice.
+    /// Records that the participant skipped the practice.
     pub fn pass_practice(&self) {
         self.log.write(&self.label, VisitEvent::PassedPractice);
     }
 
-    /// Records that the participant does not agree.
+    /// Records that the participant declined consent.
     pub fn decline(&self) {
         self.log.write(&self.label, VisitEvent::ConsentDeclined);
     }
 
-    /// Records that the participant has done everything.
+    /// Records that the participant completed the study.
     pub fn finish(&self) {
         self.log.write(&self.label, VisitEvent::Finished);
     }
 
-    /// Erases the participant's runs of this study for good; what is left says that there were some.
+    /// Erases the participant's runs of this study permanently and records the withdrawal.
     ///
     /// # Errors
-    /// They are in use, or cannot be removed.
+    /// Fails if a run is in use or cannot be removed.
     pub fn withdraw(&self) -> Result<(), RunError> {
         let own: Vec<String> = self.own_runs()?.into_iter().map(|(_, run)| run.id).collect();
         own.iter().try_for_each(|run| delete_run(&self.runs, run))?;
@@ -246,10 +246,9 @@ impl Visit {
         Ok(())
     }
 
-    /// What was erased and what is kept of a participant who has withdrawn.
     fn kept_after_withdrawal(&self) -> String {
-        "Erased: your runs with everything you did, wrote and answered in them. Kept: your label, the times of your visits, and \
-         that you withdrew; the names of the erased runs; and what the experimenter noted or copied before."
+        "Erased: your runs with everything you did, wrote and answered in them. Kept: your label, the times of your visits, your \
+         withdrawal, the names of the erased runs, and anything that the experimenter noted or copied before."
             .to_owned()
     }
 
@@ -263,7 +262,7 @@ impl Visit {
         self.study.consent.clone().map(|text| ConsentText { file, text })
     }
 
-    /// The text that the participant has not agreed to yet.
+    /// Returns the consent text if the participant has not agreed yet.
     fn open_consent(&self, own: &[OwnRun]) -> Option<ConsentText> {
         let text = self.consent_text()?;
         let digest = text.digest();
@@ -272,14 +271,14 @@ impl Visit {
         (!own.iter().any(agreed)).then_some(text)
     }
 
-    /// The participant's runs of this study, the last played first.
+    /// Returns the participant's runs of this study, the most recently played first.
     fn own_runs(&self) -> Result<Vec<OwnRun>, RunError> {
         let is_own = |stamp: &StudyStamp| stamp.digest == self.study.digest;
         let all = self.stamped_runs()?.into_iter();
         Ok(all.filter(|(manifest, _)| manifest.study.as_ref().is_some_and(is_own)).collect())
     }
 
-    /// The participant's runs of any study, the last played first.
+    /// Returns the participant's runs of any study, the most recently played first.
     fn stamped_runs(&self) -> Result<Vec<OwnRun>, RunError> {
         let with_manifest = |run: RunSummary| {
             let manifest = Derived::of(&self.runs.join(&run.id)).ok()?.manifest;
@@ -288,7 +287,7 @@ impl Visit {
         Ok(list_runs(&self.runs)?.into_iter().filter_map(with_manifest).collect())
     }
 
-    /// A participant goes on under the protocol that they began with.
+    /// Fails if the participant started under another protocol.
     fn refuse_other_protocol(&self) -> Result<(), RunError> {
         let other = self.stamped_runs()?.into_iter().find_map(|(manifest, run)| {
             let stamp = manifest.study?;
@@ -297,7 +296,7 @@ impl Visit {
         match other {
             None => Ok(()),
             Some(run) => Err(RunError::NotPossible(format!(
-                "the study was changed since {} began (run {run}): ask the experimenter. Nothing was recorded",
+                "the study was changed after {} started (run {run}). Ask the experimenter; nothing was recorded",
                 self.label
             ))),
         }

@@ -1,4 +1,4 @@
-//! `visits.jsonl` in the folder of runs: who came when, and what became of it, also where no run began.
+//! `visits.jsonl` in the folder of runs: the visits of participants and their outcomes, including visits without a run.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -15,38 +15,38 @@ use novamind_session::Machine;
 /// Name of the file.
 pub const VISITS: &str = "visits.jsonl";
 
-/// Something that happened around the runs of a study.
+/// A line of the list of visits.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct VisitLine {
-    /// When, RFC 3339.
+    /// Time, RFC 3339.
     pub at: String,
-    /// The machine.
+    /// Machine.
     pub machine: String,
     /// Digest of the study's protocol.
     pub study: String,
-    /// Label, as it was typed; empty where a code was refused.
+    /// Label as typed; empty for a rejected code.
     pub label: String,
-    /// What happened.
+    /// Event.
     pub event: VisitEvent,
 }
 
-/// What happened.
+/// An event of a visit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum VisitEvent {
-    /// A participant gave a label that was taken.
+    /// A participant entered a valid label.
     Came,
-    /// A label was refused.
+    /// A label was rejected.
     LabelRefused,
-    /// The participant does not agree to the text.
+    /// The participant declined consent.
     ConsentDeclined,
-    /// The practice was passed over.
+    /// The participant skipped the practice run.
     PassedPractice,
     /// The participant withdrew; their runs were erased.
     Withdrew,
-    /// Everything is done.
+    /// The participant completed the study.
     Finished,
-    /// A word was given for the experimenter's code and was not it. The line has neither label nor word.
+    /// A wrong experimenter's code was entered. The line contains neither a label nor the code.
     CodeRefused,
 }
 
@@ -58,12 +58,12 @@ pub(super) struct VisitLog {
 }
 
 impl VisitLog {
-    /// The list beside the runs of a machine.
+    /// Opens the list in a machine's folder of runs.
     pub(super) fn of(runs: &Path, study: &Study) -> VisitLog {
         VisitLog { path: runs.join(VISITS), study: study.digest.clone() }
     }
 
-    /// Writes a line. A list that cannot be written keeps nobody from playing: the runs are the record.
+    /// Appends a line. Failures are ignored because the runs are the record.
     pub(super) fn write(&self, label: &str, event: VisitEvent) {
         let label = label.chars().take(80).collect();
         let line =
@@ -76,42 +76,42 @@ impl VisitLog {
             .and_then(|()| append_synced(&self.path, text.as_bytes()));
     }
 
-    /// Whether something happened to a participant of this study.
+    /// Whether the list has an event of a participant of this study.
     pub(super) fn has(&self, label: &str, event: VisitEvent) -> bool {
         let lines = visits(&self.path);
         lines.iter().any(|line| line.study == self.study && line.label == label && line.event == event)
     }
 }
 
-/// Whether somebody came to a study under a label on the machine with a folder of runs.
+/// Whether a participant with a label has visited a study, by the list in a folder of runs.
 pub fn has_come(study: &Study, runs: &Path, label: &str) -> bool {
     VisitLog::of(runs, study).has(label, VisitEvent::Came)
 }
 
-/// Records that a word was given for the experimenter's code and was not it.
+/// Records that a wrong experimenter's code was entered.
 pub fn record_refused_code(study: &Study, runs: &Path) {
     VisitLog::of(runs, study).write("", VisitEvent::CodeRefused);
 }
 
-/// How many came to a study, and what became of them.
+/// The number of participants who came to a study, by outcome.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct VisitSummary {
-    /// Labels under which somebody came.
+    /// Labels with a visit.
     pub came: usize,
-    /// Of them, those who did not agree and have no run.
+    /// Labels that declined consent and have no run.
     pub declined: usize,
-    /// Those who withdrew.
+    /// Labels that withdrew.
     pub withdrew: usize,
-    /// Those who finished, and did not withdraw after it.
+    /// Labels that finished and did not withdraw.
     pub finished: usize,
-    /// Labels that were refused, each time.
+    /// Number of rejected labels, repetitions included.
     pub refused_labels: usize,
-    /// Words that were refused as the experimenter's code.
+    /// Number of rejected codes.
     pub refused_codes: usize,
 }
 
 impl VisitSummary {
-    /// Of the lines of all machines, given the labels that have runs.
+    /// Summarizes the lines of all machines, given the labels that have runs.
     pub fn of<'a>(
         lines: impl IntoIterator<Item = &'a VisitLine>,
         with_runs: &BTreeSet<&str>,
@@ -152,7 +152,7 @@ impl fmt::Display for VisitSummary {
     }
 }
 
-/// Returns the visits that ended with everything done and were not withdrawn, of labels without a run.
+/// Returns the visits that finished the study and were not withdrawn, of labels without a run.
 pub fn finished_without_run<'a>(
     lines: &'a BTreeSet<VisitLine>,
     with_runs: &BTreeSet<&str>,
@@ -164,13 +164,13 @@ pub fn finished_without_run<'a>(
     lines.iter().filter(is_finished).filter(has_no_run).collect()
 }
 
-/// Who came to a study on some machines, each line once: folders may be copies of one another.
+/// Returns the visits to a study on the given machines, each line once: folders may be copies of one another.
 pub fn visits_of(study: &Study, machines: &[PathBuf]) -> BTreeSet<VisitLine> {
     let lines = machines.iter().flat_map(|runs| visits(&runs.join(VISITS)));
     lines.filter(|line| line.study == study.digest).collect()
 }
 
-/// The lines of a list of visits; those that cannot be read are left out.
+/// Returns the lines of a list of visits. Skips lines that cannot be parsed.
 pub fn visits(path: &Path) -> Vec<VisitLine> {
     let text = read_regular_text(path);
     text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()

@@ -1,7 +1,6 @@
-//! The kernels of a day, one by one: `cargo bench`. `novamind bench` measures whole days.
+//! Benchmarks of the kernels of a day: `cargo bench`. `novamind bench` measures whole days.
 //!
-//! All of them work on one company that has grown through the simulator itself, so that its blocks are as full, its
-//! issues as many and its bills as spread as they are in a run.
+//! All kernels run on one company that the simulator has grown, so its blocks, issues and bills are those of a real run.
 
 use std::collections::BTreeSet;
 use std::sync::{Arc, LazyLock};
@@ -26,14 +25,14 @@ use novamind::world::retention::issues;
 use novamind::world::retention::satisfaction;
 use novamind::world::state::World;
 
-/// Days the company has grown: about 30,000 subscribers.
+/// Days for which the company has grown, to about 30,000 subscribers.
 const DAYS: u32 = 125;
 
 fn main() {
     divan::main();
 }
 
-/// The company, and the facts of its last day.
+/// The company and the facts of its last day.
 struct Company {
     params: Arc<Params>,
     streams: Streams,
@@ -66,7 +65,7 @@ impl Company {
         morning_of(&self.world, &self.params)
     }
 
-    /// Runs a kernel on a day on which the service holds.
+    /// Runs a kernel on a day without an outage.
     fn on_day(&self, kernel: impl FnOnce(&DayContext<'_>)) {
         let settings = &self.world.settings;
         kernel(&DayContext {
@@ -86,7 +85,7 @@ impl Company {
     }
 }
 
-/// Runs a kernel on a copy of the company's customers, once for each copy.
+/// Runs a kernel once on each copy of the company's customers.
 fn on_customers<R>(bencher: Bencher<'_, '_>, items: ItemsCount, kernel: impl Fn(&mut Customers) -> R + Sync) {
     bencher.counter(items).with_inputs(|| COMPANY.world.customers.clone()).bench_local_refs(kernel);
 }

@@ -347,7 +347,7 @@ fn audit_finds_views_of_the_hidden_state_of_a_seed_that_is_still_played() {
     let found = study.audit(&["one", "two"]);
     assert!(
         found.iter().any(|(kind, line, words)| {
-            kind == "hidden_state" && line.is_some() && words.ends_with("that were not over: P02")
+            kind == "hidden_state" && line.is_some() && words.ends_with("that had not ended: P02")
         }),
         "{found:?}"
     );

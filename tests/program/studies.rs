@@ -80,7 +80,8 @@ fn a_participant_is_led_from_the_label_to_the_thanks() {
     let script = format!("P9\nP01\nwhat?\nyes\n8\n5\nset_prices A=9 B=19\n{WEEKS}4\n2\nquit\n");
     let first = lab.visit(&script);
     assert_eq!(first.code, 0, "{}", first.err);
-    for part in ["P9 is no label of this study", "Taking part", "type a number from 1 to 7", "ok set_prices"]
+    for part in
+        ["P9 is not a label of this study", "Taking part", "type a number from 1 to 7", "ok set_prices"]
     {
         assert!(first.out.contains(part), "{part} is missing in\n{}", first.out);
     }
@@ -241,7 +242,7 @@ fn in_a_study_nothing_else_opens_without_the_code() {
     // A participant who started under one protocol cannot continue under another.
     lab.visit("P1\nyes\n3\nquit\n");
     lab.edit("advice = false", "advice = true ");
-    assert!(lab.visit("P1\n").out.contains("the study was changed since P1 began"));
+    assert!(lab.visit("P1\n").out.contains("the study was changed after P1 started"));
 }
 
 #[test]
@@ -276,7 +277,7 @@ fn wrong_protocols_are_named_with_line_and_key() {
     for (from, to, parts) in [
         ("plan = \"one\"", "plan = \"lots\"", vec![format!("line {}", line("plan")), "blocks".to_owned()]),
         ("leave_out = []", "leave_out = [\"answer\"]", vec!["cannot be left out".to_owned()]),
-        ("leave_out = []", "leave_out = [\"vieuw\"]", vec!["no kind of activity is called vieuw".to_owned()]),
+        ("leave_out = []", "leave_out = [\"vieuw\"]", vec!["unknown kind of activity vieuw".to_owned()]),
         ("title = ", "titel = ", vec!["titel".to_owned()]),
         ("days = 35", "days = 3", vec!["world.days".to_owned(), format!("line {}", line("days"))]),
     ] {
@@ -287,7 +288,7 @@ fn wrong_protocols_are_named_with_line_and_key() {
     let same =
         good.replace("offer = \"none\"", "offer = \"optional\"").replace("seed = 1_618", "seed = 2_718");
     fs::write(lab.0.0.path().join("pilot/study.toml"), same).expect("written");
-    lab.0.run(&["study", "check", &lab.folder()]).fails(3, &["practice.seed", "needs its own"]);
+    lab.0.run(&["study", "check", &lab.folder()]).fails(3, &["practice.seed", "also the seed of a session"]);
     fs::write(lab.0.0.path().join("pilot/study.toml"), &good).expect("written");
     let checked = lab.0.run(&["study", "check", &lab.folder()]);
     assert!(checked.out.contains("digest") && checked.out.contains("ok    clock"), "{}", checked.out);

@@ -1,5 +1,4 @@
-//! A participant at the console, played by a script. The clock stands but where the script lets time pass, so that the
-//! script knows every time to the millisecond.
+//! A scripted participant at the console. The script controls the clock and therefore knows every time to the millisecond.
 
 use std::ops::{Deref, DerefMut};
 use std::time::Duration;
@@ -12,17 +11,15 @@ use crate::diary::{Asked, Deed, Diary, Spent, WEEKS};
 use crate::harness::Console;
 use crate::lab::Lab;
 
-/// A machine with a console that leads participants.
+/// A machine with a console in study mode.
 pub struct Player<'a> {
     console: Console,
     clock: &'a ScriptedClock,
-    /// What the participant did.
     pub diary: Diary,
-    /// When the run began.
     began: i64,
-    /// The screen that is shown, the one before it, and since when.
+    /// Current screen, previous screen, and the time of the change.
     view: (&'static str, &'static str, i64),
-    /// Where the time of the person goes.
+    /// Class of the time that is being spent.
     spends: Spent,
 }
 
@@ -41,7 +38,7 @@ impl DerefMut for Player<'_> {
 }
 
 impl<'a> Player<'a> {
-    /// A participant before the page that asks for the label.
+    /// Starts at the page that asks for the label.
     pub fn arrive(lab: &Lab, machine: &str, label: &'static str, clock: &'a ScriptedClock) -> Player<'a> {
         let diary = Diary { label, ..Diary::default() };
         Player::arrive_again(lab, machine, diary, clock)
@@ -50,12 +47,12 @@ impl<'a> Player<'a> {
     fn arrive_again(lab: &Lab, machine: &str, diary: Diary, clock: &'a ScriptedClock) -> Player<'a> {
         let runs = lab.machine(machine);
         let mut console = Console::start(&runs, (100, 30));
-        console.lead(lab.read_study()).expect("the page of the label");
+        console.lead(lab.read_study()).expect("the label page is shown");
         let view = ("overview", "", clock.moment());
         Player { console, clock, diary, began: 0, view, spends: Spent::Away }
     }
 
-    /// Everything that was handed over is written before time passes.
+    /// Lets time pass after everything sent to the worker is written.
     pub fn wait(&mut self, seconds: u64) {
         let mut left = Duration::from_secs(seconds);
         while !left.is_zero() {
@@ -63,7 +60,7 @@ impl<'a> Player<'a> {
             let step = self.console.app.wakes_after().map_or(left, |due| due.min(left));
             self.clock.pass(step);
             self.console.app.update(Message::Time);
-            self.console.settle().expect("what follows");
+            self.console.settle().expect("the console settles");
             left -= step;
         }
         self.take_news();
@@ -72,18 +69,18 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Does something and writes down nothing.
+    /// Types keys without adding to the diary.
     pub fn does(&mut self, keys: &str) {
         self.console.press(keys);
         self.take_news();
     }
 
-    /// What nobody asked for arrives as well: questions that are due, limits.
+    /// Also waits for messages without a request: due questions, limits.
     fn take_news(&mut self) {
         self.console.finish_notes();
         while let Some(message) = self.console.received() {
             self.console.app.update(message);
-            self.console.settle().expect("what follows");
+            self.console.settle().expect("the console settles");
         }
     }
 
@@ -103,7 +100,7 @@ impl<'a> Player<'a> {
         self.diary.deeds.push(deed);
     }
 
-    /// Gives labels that the study does not know, then the own one; reads the text and agrees.
+    /// Enters unknown labels, then the correct one; reads the consent text and agrees.
     pub fn agree(&mut self, wrong: &[&str], reads: u64) {
         for label in wrong {
             self.does(&format!("'{label}' enter"));
@@ -114,7 +111,6 @@ impl<'a> Player<'a> {
         self.does("end y");
     }
 
-    /// Begins the session.
     pub fn begin(&mut self) {
         self.began = self.clock.moment();
         self.note("start", "baseline", "short", None);
@@ -128,7 +124,7 @@ impl<'a> Player<'a> {
         (self.spends, self.view) = (Spent::Active, ("overview", "", self.clock.moment()));
     }
 
-    /// Answers the only question of a page after a while.
+    /// Answers the only question of a page after some seconds.
     pub fn answer(&mut self, asked: Asked, keys: &str, value: &str, seconds: u64) {
         self.note("question", asked.questionnaire, asked.question, None);
         let before = std::mem::replace(&mut self.spends, Spent::Answering);
@@ -141,7 +137,6 @@ impl<'a> Player<'a> {
         self.diary.answered(asked, value, for_ms);
     }
 
-    /// Goes to another screen.
     pub fn go(&mut self, key: &str, screen: &'static str) {
         self.does(key);
         self.close_view();
@@ -161,7 +156,7 @@ impl<'a> Player<'a> {
         self.view.2 = self.clock.moment();
     }
 
-    /// Opens a dialog, reads it, and leaves it.
+    /// Opens a dialog, reads it, and closes it.
     pub fn read_dialog(&mut self, keys: &str, what: &str, seconds: u64) {
         self.does(keys);
         self.wait(seconds);
@@ -169,14 +164,13 @@ impl<'a> Player<'a> {
         self.note("dialog", what, "cancelled", Some(seconds * 1000));
     }
 
-    /// Asks for a term on a screen, and reads what it says.
+    /// Looks up a term on a screen and reads the explanation.
     pub fn look_up(&mut self, keys: &str, term: &str, seconds: u64) {
         let place = self.view.0;
         self.note("help", term, place, None);
         self.read_dialog(keys, "explanation", seconds);
     }
 
-    /// Asks the database on the SQL screen.
     pub fn query(&mut self, sql: &str, error: &str) {
         self.does(&format!("'{}' f5 esc", sql.replace(' ', "' _ '")));
         self.note("draft", "sql", "sent", Some(0));
@@ -184,7 +178,6 @@ impl<'a> Player<'a> {
         self.diary.queries.push(sql.to_owned());
     }
 
-    /// Keeps notes.
     pub fn keep_notes(&mut self, text: &str, seconds: u64) {
         self.does("tab e");
         self.does(&format!("'{}'", text.replace(' ', "' _ '")));
@@ -195,7 +188,7 @@ impl<'a> Player<'a> {
         self.diary.notes.push(text.to_owned());
     }
 
-    /// Looks at the changes, gives a reason, lets the program fill in the forecasts, and lets the week pass.
+    /// Reviews the changes, enters a reason, fills the forecasts with the projection, and simulates the week.
     pub fn week(&mut self, why: &'static str, reviews: u64, thinks: u64) {
         self.does("n");
         self.wait(reviews);
@@ -207,7 +200,7 @@ impl<'a> Player<'a> {
         self.passes(why, "form");
     }
 
-    /// A week passes.
+    /// Records that a week was simulated.
     fn passes(&mut self, why: &str, via: &str) {
         self.close_view();
         self.note("advance", via, "", None);
@@ -232,7 +225,6 @@ impl<'a> Player<'a> {
         self.type_price(price);
     }
 
-    /// Sets it again.
     pub fn set_price_again(&mut self, price: &str) {
         self.select("enter", "tool", "set_prices");
         self.does("up");
@@ -252,7 +244,7 @@ impl<'a> Player<'a> {
         self.note("dialog", "final page", "cancelled", Some(seconds * 1000));
     }
 
-    /// Leaves the page of thanks to the next participant.
+    /// Leaves the final page to the next participant.
     pub fn goes_home(mut self) -> Diary {
         self.close_view();
         self.leaves("quit");
@@ -261,7 +253,7 @@ impl<'a> Player<'a> {
         self.diary.clone()
     }
 
-    /// Stops the clock for a while, and starts it again; the question of a break follows.
+    /// Stops and restarts the clock, and gets the question about the break.
     pub fn pause(&mut self, reason: &'static str, seconds: u64) {
         self.does("; p");
         self.wait(2);
@@ -277,7 +269,7 @@ impl<'a> Player<'a> {
         self.note("clock", "started", "", Some(seconds * 1000));
     }
 
-    /// Presses no key for a while, longer than a minute.
+    /// Presses no key for more than a minute.
     pub fn idle(&mut self, seconds: u64) {
         self.does("down");
         self.spends = Spent::Idle;
@@ -289,7 +281,7 @@ impl<'a> Player<'a> {
         self.note("session", "active", "", Some(seconds * 1000));
     }
 
-    /// Has another window in front for a while.
+    /// Focuses another window for some seconds.
     pub fn look_elsewhere(&mut self, seconds: u64) {
         self.console.send(Event::FocusLost);
         self.note("session", "focus_lost", "", None);
@@ -300,7 +292,7 @@ impl<'a> Player<'a> {
         self.note("session", "focus_gained", "", None);
     }
 
-    /// Suspends the program for a while.
+    /// Suspends the program for some seconds.
     pub fn suspend(&mut self, seconds: u64) {
         self.console.app.suspend();
         self.console.settle().expect("nothing to wait for");
@@ -315,8 +307,7 @@ impl<'a> Player<'a> {
         self.note("session", "resumed", "", None);
     }
 
-    /// Plays on in one week until the time for it is over: is warned, types a reason meanwhile, and has the week filed
-    /// without it.
+    /// Exceeds the time limit of a week: gets the warning, types a reason, and the week is filed without it.
     pub fn runs_out_of_time(&mut self) {
         let spent =
             self.diary.time.get(&(self.diary.week(), Spent::Active)).copied().unwrap_or_default() / 1000;
@@ -346,16 +337,16 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// The limit is looked at by a real clock, every second, while that of the script stands.
+    /// Waits for the limit. The program checks it every second of real time, while the script's clock is stopped.
     fn await_limit(&mut self, shown: &str) {
         while !self.console.screen().contains(shown) {
-            let message = self.console.receive().expect("the limit is noticed");
+            let message = self.console.receive().expect("the limit is reported");
             self.console.app.update(message);
-            self.console.settle().expect("what follows");
+            self.console.settle().expect("the console settles");
         }
     }
 
-    /// Asks to withdraw, and confirms it twice.
+    /// Withdraws and confirms twice.
     pub fn withdraws(mut self) -> Diary {
         self.does(": 'withdraw' enter y 'withdraw' enter");
         self.console.shows("You have withdrawn");
@@ -364,7 +355,7 @@ impl<'a> Player<'a> {
         diary
     }
 
-    /// Reads the text, and does not agree.
+    /// Reads the consent text and declines.
     pub fn declines(mut self, reads: u64) -> Diary {
         self.does(&format!("'{}' enter", self.diary.label));
         self.wait(reads);
@@ -375,13 +366,13 @@ impl<'a> Player<'a> {
         diary
     }
 
-    /// Takes back the call before.
+    /// Undoes the previous call.
     pub fn undo(&mut self) {
         self.does("u");
         self.note("call", "set_prices", "palette", None);
     }
 
-    /// Types half a reason; then the terminal is closed, and later the text is offered again.
+    /// Types half a reason, loses the terminal, returns, and restores the text.
     pub fn hang_up_with_text(
         mut self,
         lab: &Lab,
@@ -400,7 +391,7 @@ impl<'a> Player<'a> {
         back
     }
 
-    /// Leaves the run for a while and comes back; the question of a break follows.
+    /// Leaves the run, returns later, and gets the question about the break.
     pub fn leave_for(&mut self, seconds: u64) {
         self.does("; q");
         self.close_view();
@@ -416,10 +407,10 @@ impl<'a> Player<'a> {
         self.spends = Spent::Away;
     }
 
-    /// The terminal is closed; the participant comes back after a while, on another console.
+    /// Loses the terminal and returns later on another console.
     fn hang_up_for(mut self, lab: &Lab, machine: &str, seconds: u64) -> Player<'a> {
         self.console.app.update(Message::Signal(1));
-        self.console.settle().expect("it leaves");
+        self.console.settle().expect("the console exits");
         self.console.finish_notes();
         self.note("dialog", "next week", "cancelled", Some(4000));
         self.note("draft", "rationale", "left", Some(0));
@@ -436,6 +427,6 @@ impl<'a> Player<'a> {
     }
 }
 
-/// Active seconds that a week may take, and how long before them the warning comes.
+/// Limit of active seconds per week, and the time of the warning before it.
 const WEEK_SECONDS: u64 = 600;
 const WARNING_SECONDS: u64 = 60;

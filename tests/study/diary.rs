@@ -1,25 +1,25 @@
-//! What a script did, written down by the script itself, in the words of the tables.
+//! The actions of a script, recorded by the script itself in the terms of the tables.
 
 use std::collections::BTreeMap;
 
-/// Where time goes.
+/// Class of time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Spent {
     Active,
-    /// With questions of the study.
+    /// Answering questions of the study.
     Answering,
     Idle,
     Away,
     /// The clock is stopped.
     Paused,
-    /// The program shows what comes after the end.
+    /// After the end of the run.
     After,
 }
 
-/// A line that the record has to hold.
+/// A line that the record must contain.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Deed {
-    /// Milliseconds since the run began.
+    /// Milliseconds since the start of the run.
     pub at: u64,
     /// Week that was being decided.
     pub week: u32,
@@ -39,7 +39,7 @@ pub struct Answered {
     pub for_ms: u64,
 }
 
-/// Everything one participant did.
+/// All actions of one participant.
 #[derive(Debug, Clone, Default)]
 pub struct Diary {
     pub label: &'static str,
@@ -50,40 +50,36 @@ pub struct Diary {
     pub time: BTreeMap<(u32, Spent), u64>,
     pub sittings: u32,
     pub sittings_not_closed: u32,
-    /// Reasons of weeks that ran, and whether they were filled naively.
+    /// Rationales of simulated weeks, and whether forecasts were filled naively.
     pub weeks: Vec<(String, bool)>,
-    /// Statements.
     pub queries: Vec<String>,
-    /// Texts of notes.
     pub notes: Vec<String>,
-    /// The run is over.
+    /// Whether the run has ended.
     pub over: bool,
-    /// Nothing of it is left.
+    /// Whether the run was erased or never created.
     pub erased: bool,
-    /// Times are those of a real clock; the script knows bounds.
+    /// Whether times come from a real clock, for which the script knows only bounds.
     pub real: bool,
-    /// Least and most milliseconds.
+    /// Minimum and maximum milliseconds.
     pub bounds: BTreeMap<Spent, (u64, u64)>,
 }
 
 impl Diary {
-    /// Week that is being decided; the last one once it is over.
+    /// Returns the week that is being decided, or the last one after the end.
     pub fn week(&self) -> u32 {
         (self.weeks.len() as u32 + 1).min(WEEKS)
     }
 
-    /// Some more time was spent: no less than, and no more than.
+    /// Adds time with a lower and an upper bound.
     pub fn between(&mut self, spent: Spent, least: u64, most: u64) {
         let bounds = self.bounds.entry(spent).or_default();
         *bounds = (bounds.0 + least, bounds.1 + most);
     }
 
-    /// Milliseconds of the whole run.
     pub fn spent(&self, what: Spent) -> u64 {
         self.time.iter().filter(|((_, own), _)| *own == what).map(|(_, ms)| ms).sum()
     }
 
-    /// A question was answered.
     pub fn answered(&mut self, asked: Asked, value: &str, for_ms: u64) {
         let breaks = self.answers.iter().filter(|answer| answer.question == BREAK.question).count();
         let occasion = match asked.occasion {
@@ -93,7 +89,6 @@ impl Diary {
         self.answers.push(Answered { occasion, question: asked.question, value: value.to_owned(), for_ms });
     }
 
-    /// How many lines of a kind.
     pub fn count(&self, kind: &str) -> usize {
         self.deeds.iter().filter(|deed| deed.kind == kind).count()
     }

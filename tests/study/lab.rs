@@ -1,4 +1,4 @@
-//! The study: its protocol, its three machines, and what the experimenter does with them.
+//! The study: its protocol, its three machines, and the commands of the experimenter.
 
 use std::fs;
 use std::path::PathBuf;
@@ -82,7 +82,7 @@ required = true
 "#;
 
 impl Lab {
-    /// The study and its machines, on which nobody has played.
+    /// Creates the study and its machines without runs.
     pub fn new() -> Lab {
         let lab = Lab { home: Home::new() };
         let folder = lab.study();
@@ -110,22 +110,19 @@ impl Lab {
         self.home.0.path().join(name)
     }
 
-    /// Folder of the study.
     pub fn study(&self) -> PathBuf {
         self.path("study")
     }
 
-    /// Folder of runs of a machine.
     pub fn machine(&self, name: &str) -> PathBuf {
         self.path(name)
     }
 
-    /// The protocol, read.
     pub fn read_study(&self) -> Study {
         Study::read(&self.study()).expect("a study")
     }
 
-    /// The program, which plays on a machine.
+    /// Returns the command that runs the program on a machine.
     pub fn program(&self, machine: &str) -> std::process::Command {
         let mut command = self.home.program();
         command.env("NOVAMIND_RUNS", self.machine(machine)).arg("--study").arg(self.study());
@@ -136,25 +133,23 @@ impl Lab {
         self.home.run(arguments)
     }
 
-    /// A command about the machines.
+    /// Runs a command on the folders of all machines.
     fn about_machines(&self, before: &[&str], after: &[&str]) -> Said {
         let machines = MACHINES.map(|name| self.machine(name).display().to_string());
         let machines: Vec<&str> = machines.iter().map(String::as_str).collect();
         self.command(&[before, &machines, after].concat())
     }
 
-    /// Folder of the tables.
     pub fn data(&self) -> PathBuf {
         self.path("data")
     }
 
-    /// Collects what the machines hold.
     pub fn collect(&self) -> Said {
         let (data, study) = (self.data().display().to_string(), self.study().display().to_string());
         self.about_machines(&["study", "collect"], &["--out", &data, "--protocol", &study])
     }
 
-    /// Writes tables that do not tell who took part; their folder.
+    /// Writes tables that do not identify the participants, and returns their folder.
     pub fn anonymise(&self) -> PathBuf {
         let (public, secret) = (self.path("public"), self.path("secret"));
         let path = |path: &PathBuf| path.display().to_string();
@@ -170,7 +165,7 @@ impl Lab {
         public
     }
 
-    /// The audit of honest sessions.
+    /// Audits the honest sessions, which must not cause findings.
     pub fn audit_finds_nothing(&self) {
         let study = self.study().display().to_string();
         let said = self.about_machines(&["study", "audit", &study], &[]);

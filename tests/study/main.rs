@@ -1,12 +1,12 @@
-//! A whole study without a screen: twelve scripted participants on three machines, then everything an experimenter does
-//! with what they leave. Every line, time, week, question and decision in the tables is compared with what the scripts did.
+//! A whole study without a screen: twelve scripted participants on three machines, then the experimenter's commands on their
+//! runs. Every line, time, week, question and decision in the tables is compared with the actions of the scripts.
 //!
 //!     cargo test --test study
 
 mod console;
 mod diary;
 #[path = "../console/harness.rs"]
-#[allow(dead_code, reason = "the stories of the console use the rest")]
+#[allow(dead_code, reason = "the console tests use the rest")]
 mod harness;
 mod lab;
 mod plain;
@@ -25,7 +25,7 @@ fn twelve_participants_are_in_the_tables_as_they_played() {
     diaries.extend(scripts::second_machine(&lab));
     diaries.extend(scripts::third_machine(&lab));
     let said = lab.collect();
-    // Two have left nothing, and the experimenter is told.
+    // Two participants have no session, which `collect` reports.
     let notes = [
         "label P05 has no session; last visit: consent declined",
         "label P06 has no session; last visit: withdrew",

@@ -1,5 +1,5 @@
-//! A participant in plain mode: the built program, line by line, with a real clock. The script knows between which moments
-//! everything happened.
+//! A scripted participant in plain mode: the built program with a real clock. The script knows lower and upper bounds of all
+//! times.
 
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout};
@@ -8,21 +8,20 @@ use std::time::Instant;
 use crate::diary::{Asked, Deed, Diary, Spent, WEEKS};
 use crate::lab::Lab;
 
-/// The program with a participant before it.
+/// The program and its participant.
 pub struct Plain<'a> {
     lab: &'a Lab,
     machine: &'static str,
     child: Child,
     lines: ChildStdin,
     answers: BufReader<ChildStdout>,
-    /// When the line before was sent.
+    /// Time of the previous line.
     said: Instant,
-    /// What the participant did.
     pub diary: Diary,
 }
 
 impl<'a> Plain<'a> {
-    /// Gives a label, and agrees.
+    /// Enters a label and agrees.
     pub fn arrive(lab: &'a Lab, machine: &'static str, label: &'static str) -> Plain<'a> {
         let diary = Diary { label, real: true, ..Diary::default() };
         let mut plain = Plain::start(lab, machine, diary);
@@ -33,7 +32,7 @@ impl<'a> Plain<'a> {
     }
 
     fn start(lab: &'a Lab, machine: &'static str, diary: Diary) -> Plain<'a> {
-        let mut child = lab.program(machine).arg("--plain").spawn().expect("it starts");
+        let mut child = lab.program(machine).arg("--plain").spawn().expect("the program starts");
         let lines = child.stdin.take().expect("a pipe");
         let answers = BufReader::new(child.stdout.take().expect("a pipe"));
         let mut plain = Plain { lab, machine, child, lines, answers, said: Instant::now(), diary };
@@ -50,15 +49,15 @@ impl<'a> Plain<'a> {
 
     fn say(&mut self, line: &str) {
         self.said = Instant::now();
-        writeln!(self.lines, "{line}").expect("it reads");
+        writeln!(self.lines, "{line}").expect("the program reads input");
     }
 
-    /// Reads what the program says until a line holds a text.
+    /// Reads the output until a line contains a text.
     fn wait_for(&mut self, text: &str) {
         let mut said = String::new();
         while !said.lines().last().is_some_and(|line| line.contains(text)) {
-            let read = self.answers.read_line(&mut said).expect("it answers");
-            assert!(read > 0, "{text:?} is not among\n{said}");
+            let read = self.answers.read_line(&mut said).expect("the program responds");
+            assert!(read > 0, "{text:?} is missing in the output:\n{said}");
         }
     }
 
@@ -67,7 +66,6 @@ impl<'a> Plain<'a> {
         self.diary.deeds.push(Deed { at: 0, week: self.diary.week(), kind, what, which, for_ms: None });
     }
 
-    /// Answers a question.
     pub fn answer(&mut self, asked: Asked, typed: &str, value: &str) {
         self.say(typed);
         self.note("question", asked.questionnaire, asked.question);
@@ -75,14 +73,12 @@ impl<'a> Plain<'a> {
         self.diary.answered(asked, value, 0);
     }
 
-    /// Calls a tool.
     pub fn call(&mut self, tool: &str, arguments: &str) {
         self.say(&format!("{tool} {arguments}"));
         self.wait_for(&format!("ok {tool}"));
         self.note("call", tool, "plain");
     }
 
-    /// Asks the database.
     pub fn query(&mut self, sql: &str) {
         self.say(&format!("sql {sql}"));
         self.note("query", "typed", "");
@@ -96,7 +92,7 @@ impl<'a> Plain<'a> {
         self.diary.notes.push(format!("{text}\n"));
     }
 
-    /// Looks up a term, and looks at the inbox.
+    /// Looks up a term and views the inbox.
     pub fn look_around(&mut self, word: &str, term: &str) {
         self.say(&format!("explain {word}"));
         self.note("help", term, "plain");
@@ -104,7 +100,6 @@ impl<'a> Plain<'a> {
         self.note("select", "command", "inbox");
     }
 
-    /// Stops the clock and starts it again.
     pub fn pause(&mut self, reason: &str) {
         let before = Instant::now();
         self.say(&format!("pause {reason}"));
@@ -119,7 +114,6 @@ impl<'a> Plain<'a> {
         self.diary.between(Spent::Paused, least, ms(before));
     }
 
-    /// Lets a week pass.
     pub fn week(&mut self, why: &str) {
         self.say(&format!("next \"{why}\" naive"));
         let week = self.diary.weeks.len() + 1;
@@ -133,32 +127,32 @@ impl<'a> Plain<'a> {
         }
     }
 
-    /// Quits, and comes back.
+    /// Quits and returns.
     pub fn leaves_and_returns(mut self) -> Plain<'a> {
         let before = Instant::now();
         self.say("quit");
         self.note("session", "closed", "quit");
-        let code = self.child.wait().expect("it ends");
+        let code = self.child.wait().expect("the program ends");
         assert_eq!(code.code(), Some(0));
         self.returns(before)
     }
 
-    /// The program is killed, and the participant comes back.
+    /// Kills the program, then returns.
     pub fn killed_and_returns(mut self) -> Plain<'a> {
-        // Nobody knows when a killed program was left: not after the last line.
+        // The record does not show when a killed program ended, so its time counts only up to the last line.
         let before = self.said;
         self.child.kill().expect("killed");
-        self.child.wait().expect("it ends");
+        self.child.wait().expect("the program ends");
         self.diary.sittings_not_closed += 1;
         self.returns(before)
     }
 
-    /// The terminal is closed, and the participant comes back.
+    /// Closes the terminal, then returns.
     pub fn hung_up_and_returns(mut self) -> Plain<'a> {
         let before = Instant::now();
         let sent = std::process::Command::new("kill").args(["-HUP", &self.child.id().to_string()]).status();
         assert!(sent.expect("sent").success());
-        self.child.wait().expect("it ends");
+        self.child.wait().expect("the program ends");
         self.note("session", "closed", "hangup");
         self.returns(before)
     }
@@ -174,17 +168,17 @@ impl<'a> Plain<'a> {
         back
     }
 
-    /// Is thanked.
+    /// Completes the study.
     pub fn goes_home(mut self) -> Diary {
         self.wait_for("Thank you");
         self.note("session", "closed", "quit");
-        assert_eq!(self.child.wait().expect("it ends").code(), Some(0));
+        assert_eq!(self.child.wait().expect("the program ends").code(), Some(0));
         self.diary
     }
 }
 
-/// Milliseconds since a moment, rounded up, as an upper bound: the record subtracts moments that are cut to milliseconds, and such a difference can be
-/// the next larger number.
+/// Returns the milliseconds since a time, rounded up, as an upper bound: the record subtracts times that are truncated to
+/// milliseconds, so its difference can be the next larger number.
 fn ms(since: Instant) -> u64 {
     u64::try_from(since.elapsed().as_micros().div_ceil(1000)).unwrap_or(u64::MAX)
 }

@@ -1,4 +1,4 @@
-//! What each participant does.
+//! The script of each participant.
 
 use novamind::record::clock::{ScriptedClock, nanoseconds as nanoseconds_of};
 
@@ -7,7 +7,7 @@ use crate::diary::{BEFORE, BREAK, Diary, END, WEEK};
 use crate::lab::Lab;
 use crate::plain::Plain;
 
-/// The first machine: from one end to the other, with a pause, out of time, and absent.
+/// The first machine: a complete session, a pause, a time limit, and absences.
 pub fn first_machine(lab: &Lab) -> Vec<Diary> {
     let clock = ScriptedClock::start(nanoseconds_of("2026-03-02T09:00:00Z"));
     vec![
@@ -43,7 +43,7 @@ fn straight_through(lab: &Lab, clock: &ScriptedClock) -> Diary {
     finish(player)
 }
 
-/// Stops the clock once, and leaves for some hours once.
+/// Stops the clock once and leaves once for some hours.
 fn with_breaks(lab: &Lab, clock: &ScriptedClock) -> Diary {
     let mut player = Player::arrive(lab, "m1", "P02", clock);
     player.agree(&[], 20);
@@ -60,7 +60,7 @@ fn with_breaks(lab: &Lab, clock: &ScriptedClock) -> Diary {
     finish(player)
 }
 
-/// Thinks for so long that the second week is filed for them.
+/// Exceeds the time limit of the second week.
 fn out_of_time(lab: &Lab, clock: &ScriptedClock) -> Diary {
     let mut player = Player::arrive(lab, "m1", "P03", clock);
     player.agree(&[], 20);
@@ -75,7 +75,7 @@ fn out_of_time(lab: &Lab, clock: &ScriptedClock) -> Diary {
     finish(player)
 }
 
-/// Presses no key for a while, looks at another window, and suspends the program.
+/// Presses no key for some minutes, focuses another window, and suspends the program.
 fn absent(lab: &Lab, clock: &ScriptedClock) -> Diary {
     let mut player = Player::arrive(lab, "m1", "P04", clock);
     player.agree(&[], 20);
@@ -93,7 +93,7 @@ fn absent(lab: &Lab, clock: &ScriptedClock) -> Diary {
     finish(player)
 }
 
-/// Plays the weeks that are left, and answers what is asked.
+/// Plays the remaining weeks and answers all questions.
 fn finish(mut player: Player<'_>) -> Diary {
     while !player.diary.over {
         player.wait(2);
@@ -111,7 +111,7 @@ fn finish(mut player: Player<'_>) -> Diary {
     player.goes_home()
 }
 
-/// The second machine: declines, withdraws, mistypes the label, and has the terminal closed.
+/// The second machine: declines, withdraws, mistypes the label, and loses the terminal.
 pub fn second_machine(lab: &Lab) -> Vec<Diary> {
     let clock = ScriptedClock::start(nanoseconds_of("2026-03-03T09:00:00Z"));
     vec![
@@ -132,7 +132,7 @@ fn withdraws(lab: &Lab, clock: &ScriptedClock) -> Diary {
     player.withdraws()
 }
 
-/// Gives a wrong label twice, asks what cannot be answered, and takes back a price.
+/// Enters two wrong labels, runs an invalid query, and undoes a price.
 fn mistypes(lab: &Lab, clock: &ScriptedClock) -> Diary {
     let mut player = Player::arrive(lab, "m2", "P07", clock);
     player.agree(&["P99", "../x"], 20);
@@ -149,7 +149,7 @@ fn mistypes(lab: &Lab, clock: &ScriptedClock) -> Diary {
     finish(player)
 }
 
-/// The terminal is closed while a reason is typed.
+/// Loses the terminal while typing a reason.
 fn hung_up(lab: &Lab, clock: &ScriptedClock) -> Diary {
     let mut player = Player::arrive(lab, "m2", "P08", clock);
     player.agree(&[], 20);
@@ -160,7 +160,7 @@ fn hung_up(lab: &Lab, clock: &ScriptedClock) -> Diary {
     finish(player)
 }
 
-/// The third machine, line by line: with a pause, killed, closed, and in two sittings.
+/// The third machine, in plain mode: a pause, a killed program, a closed terminal, and two sittings.
 pub fn third_machine(lab: &Lab) -> Vec<Diary> {
     vec![line_by_line(lab), killed(lab), closed(lab), twice(lab)]
 }

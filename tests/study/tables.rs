@@ -1,4 +1,4 @@
-//! The tables, beside the diaries.
+//! Comparison of the tables with the diaries.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::diary::{Answered, Deed, Diary, Spent, WEEKS};
 use crate::lab::Lab;
 
-/// A row by its columns.
+/// A row of a table by column.
 type Row = BTreeMap<String, String>;
 
 fn read(folder: &Path, table: &str) -> Vec<Row> {
@@ -20,12 +20,11 @@ fn read(folder: &Path, table: &str) -> Vec<Row> {
     reader.records().map(|record| row(record.expect("a row"))).collect()
 }
 
-/// The rows of a participant.
 fn of<'a>(rows: &'a [Row], label: &str) -> Vec<&'a Row> {
     rows.iter().filter(|row| row["participant"] == label).collect()
 }
 
-/// Compares every table with what the scripts did.
+/// Compares every table with the actions of the scripts.
 pub fn compare(lab: &Lab, diaries: &[Diary]) {
     let [runs, weeks, events, queries, answers, notes, forecasts] =
         ["runs", "weeks", "events", "queries", "answers", "notes", "forecasts"]
@@ -54,11 +53,10 @@ fn deeds(diary: &Diary, rows: &[&Row]) {
     let told: Vec<String> = rows.iter().map(|row| told(row, diary.real)).collect();
     let done: Vec<String> = diary.deeds.iter().map(|deed| done(deed, diary.real)).collect();
     let different = told.iter().zip(&done).find(|(told, done)| told != done);
-    assert_eq!(different, None, "{}: what the table tells, and what was done", diary.label);
+    assert_eq!(different, None, "{}: the table differs from the diary", diary.label);
     assert_eq!(told.len(), done.len(), "{}", diary.label);
 }
 
-/// The row of `runs.csv`.
 fn whole_run(diary: &Diary, row: &Row) {
     let deeds = |part: fn(&Deed) -> bool| diary.deeds.iter().filter(|deed| part(deed)).count().to_string();
     let number = diary.label[1..].parse::<u64>().expect("a number");
@@ -89,7 +87,7 @@ fn whole_run(diary: &Diary, row: &Row) {
     for (column, expected) in expected {
         assert_eq!(row[column], expected, "{}: {column}", diary.label);
     }
-    // What is done after the end is not counted with what was played.
+    // Actions after the end are not counted.
     let before_the_end = diary.deeds.iter().position(|deed| deed.kind == "end").expect("it ended");
     let played = Diary { deeds: diary.deeds[..before_the_end].to_vec(), ..diary.clone() };
     for (column, kind) in [("views", "view"), ("selects", "select"), ("helps", "help")] {
@@ -112,7 +110,7 @@ fn told_ms(row: &Row, column: &str) -> u64 {
     (row[column].parse::<f64>().expect("seconds") * 1e3).round() as u64
 }
 
-/// Where the time of the whole run went.
+/// Compares the times of the whole run.
 fn times(diary: &Diary, row: &Row) {
     let told = |column: &str| told_ms(row, column);
     let own = |spent| diary.spent(spent);
@@ -138,7 +136,6 @@ fn times(diary: &Diary, row: &Row) {
     assert_eq!(told("active_seconds_after_end"), own(Spent::After), "{}", diary.label);
 }
 
-/// The rows of `weeks.csv`.
 fn single_weeks(diary: &Diary, rows: &[&Row]) {
     assert_eq!(rows.len(), diary.weeks.len(), "{}", diary.label);
     for (week, row) in (1..).zip(rows) {
@@ -163,13 +160,11 @@ fn single_weeks(diary: &Diary, rows: &[&Row]) {
     }
 }
 
-/// One column.
 fn cells(diary: &Diary, rows: &[&Row], column: &str, expected: &[String]) {
     let told: Vec<&String> = rows.iter().map(|row| &row[column]).collect();
     assert_eq!(told, expected.iter().collect::<Vec<_>>(), "{}: {column}", diary.label);
 }
 
-/// The rows of `answers.csv`.
 fn given(diary: &Diary, rows: &[&Row]) {
     let told: Vec<Answered> = rows
         .iter()
@@ -188,10 +183,10 @@ fn given(diary: &Diary, rows: &[&Row]) {
 
 const QUESTIONS: [&str; 4] = ["experience", "check", "spoke", "strategy"];
 
-/// Kinds whose duration is the machine's, not the person's.
+/// Kinds whose duration depends on the machine, not on the participant.
 const OF_MACHINE: [&str; 2] = ["query", "call"];
 
-/// A line as the table tells it. Times of a real clock are compared elsewhere.
+/// Describes a line of the table. Times of a real clock are compared elsewhere.
 fn told(row: &Row, real: bool) -> String {
     let cell = |name: &str| row[name].as_str();
     let which = if cell("kind") == "note" { "" } else { cell("which") };
@@ -201,20 +196,20 @@ fn told(row: &Row, real: bool) -> String {
     format!("{at} week {}: {} {} {which} {for_ms}", cell("week"), cell("kind"), cell("what"))
 }
 
-/// The same as the script has done it.
+/// Describes an action of the script in the same format.
 fn done(deed: &Deed, real: bool) -> String {
     let for_ms = deed.for_ms.map(|ms| ms.to_string()).unwrap_or_default();
     let at = if real { String::new() } else { (deed.at as f64 / 1e3).to_string() };
     format!("{at} week {}: {} {} {} {for_ms}", deed.week, deed.kind, deed.what, deed.which)
 }
 
-/// The tables without names hold the same runs.
+/// Checks that the anonymized tables contain the same runs.
 pub fn anonymised(lab: &Lab, diaries: &[Diary]) {
     let public = lab.anonymise();
     for entry in fs::read_dir(&public).expect("a folder").flatten() {
         let text = fs::read_to_string(entry.path()).expect("a text");
         for diary in diaries {
-            assert!(!text.contains(diary.label), "{} stands in {}", diary.label, entry.path().display());
+            assert!(!text.contains(diary.label), "{} occurs in {}", diary.label, entry.path().display());
         }
         for text_of_a_person in ["ads for S1", "guessed"] {
             assert!(!text.contains(text_of_a_person), "{text_of_a_person}: {}", entry.path().display());

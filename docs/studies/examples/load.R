@@ -1,9 +1,9 @@
-# Loads the tables of a study (docs/studies/tables.md) with the types that columns.csv names; base R only.
+# Loads the tables of a study (docs/studies/tables.md) with the types that columns.csv defines; base R only.
 #
 #   Rscript load.R FOLDER            prints a line for each run
 #   source("load.R"); study <- tables("FOLDER"); study$runs
 #
-# Missing values are NA. A ' that keeps a text from being a formula is taken away.
+# Missing values are NA. The ' that prevents a text from being a formula is removed.
 
 names_of_tables <- c("runs", "weeks", "forecasts", "queries", "events", "answers", "notes",
                      "visits")

@@ -1,9 +1,9 @@
-"""Loads the tables of a study (docs/studies/tables.md) with the types that columns.csv names.
+"""Loads the tables of a study (docs/studies/tables.md) with the types that columns.csv defines.
 
     python3 load.py FOLDER            prints a line for each run
-    from load import tables           tables("FOLDER") gives data frames if pandas is there, else lists of dicts
+    from load import tables           tables("FOLDER") returns data frames if pandas is installed, otherwise lists of dicts
 
-Missing values are None, or NaN in data frames. A `'` that keeps a text from being a formula is taken away.
+Missing values are None, or NaN in data frames. The `'` that prevents a text from being a formula is removed.
 """
 
 import csv
@@ -21,13 +21,13 @@ REAL = {"dollars", "dollars a month", "share", "seconds", "milliseconds", "minut
 
 
 def columns(folder):
-    """Unit and meaning by table and column."""
+    """Returns the rows of columns.csv by table and column."""
     with open(Path(folder) / "columns.csv", newline="", encoding="utf-8") as file:
         return {(row["table"], row["column"]): row for row in csv.DictReader(file)}
 
 
 def value(text, unit):
-    """A cell as its unit says."""
+    """Converts a cell according to its unit."""
     if text == "":
         return None
     if unit == "0 or 1":
@@ -40,7 +40,7 @@ def value(text, unit):
 
 
 def rows(folder, name):
-    """A table as a list of dicts."""
+    """Returns a table as a list of dicts."""
     known = columns(folder)
     with open(Path(folder) / f"{name}.csv", newline="", encoding="utf-8") as file:
         table = csv.DictReader(file)
@@ -48,7 +48,7 @@ def rows(folder, name):
 
 
 def tables(folder):
-    """All tables by name."""
+    """Returns all tables by name."""
     loaded = {name: rows(folder, name) for name in NAMES}
     if pandas is None:
         return loaded

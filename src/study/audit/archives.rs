@@ -1,4 +1,4 @@
-//! Archives that lie among the runs: whether the lab whose public key the study has signed them.
+//! Checks that archives among the runs are signed by the lab of the study.
 
 use std::path::{Path, PathBuf};
 
@@ -9,11 +9,11 @@ use novamind_record::error::RunError;
 use novamind_record::folder::manifest::Manifest;
 use novamind_session::{LabPublicKey, Workshop, import_run, is_archive_name};
 
-/// Archives of the study in folders that the lab has not signed, or that are damaged. Without a public key nothing is
-/// asked.
+/// Returns a finding for each archive of the study that is damaged or not signed by the lab. Without a public key nothing is
+/// checked.
 ///
 /// # Errors
-/// The public key cannot be read; there is no room to unpack.
+/// Fails if the public key cannot be read, or if there is no folder to unpack into.
 pub(super) fn not_signed(study: &Study, folders: &[PathBuf]) -> Result<Vec<AuditFinding>, RunError> {
     let Some(lab) = lab_public_key_of(&study.folder)? else { return Ok(Vec::new()) };
     let workshop = Workshop::within(&std::env::temp_dir())?;
@@ -45,7 +45,7 @@ fn inspect(study: &Study, lab: &LabPublicKey, archive: &Path, place: &Path) -> O
         .and_then(|()| import_run(place, archive, None));
     let (seal, signer, _) = match unpacked {
         Ok(unpacked) => unpacked,
-        // An archive that cannot be read does not say whose run it holds.
+        // The run of an unreadable archive is unknown.
         Err(problem) => return Some(finding(AuditKind::Damaged, "?", None, problem.to_string())),
     };
     let manifest = Manifest::read(&place.join(&seal.run)).ok()?;
@@ -56,7 +56,7 @@ fn inspect(study: &Study, lab: &LabPublicKey, archive: &Path, place: &Path) -> O
     let words = match signer {
         None => format!("{} is not signed", archive.display()),
         Some(key) => format!(
-            "{} is signed by the key {}, which is not the lab's",
+            "{} is signed with the key {}, which is not the lab's",
             archive.display(),
             key.fingerprint()
         ),

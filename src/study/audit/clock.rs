@@ -1,12 +1,12 @@
-//! Whether the clock of a machine was changed while a run was played.
+//! Detects changes of a machine's clock during a run.
 
 use novamind_record::trajectory::record::{Activity, Presence};
 use novamind_record::trajectory::{Line, Record};
 
-/// Seconds that a running clock may be corrected by without a finding.
+/// Correction of a running clock that is not reported, seconds.
 const CORRECTION: f64 = 2.0;
-/// Seconds per second that the two clocks may drift apart without a finding: the fastest rate at which the Linux kernel
-/// slews a clock.
+/// Drift between the two clocks that is not reported, seconds per second: the fastest rate at which the Linux kernel slews a
+/// clock.
 const DRIFT: f64 = 500e-6;
 
 /// Returns the lines before which the wall clock was changed, each with an explanation. Between two lines, the wall clock
@@ -29,7 +29,7 @@ pub(super) fn clock_changes<'a>(lines: impl IntoIterator<Item = &'a Line>) -> Ve
     found
 }
 
-/// Explains by how much the two clocks disagree between two `session` lines, if they do.
+/// Returns an explanation if the two clocks disagree between two `session` lines.
 fn disagreement(earlier: (&Line, &Presence), later: (&Line, &Presence)) -> Option<String> {
     let ((before, from), (line, to)) = (earlier, later);
     let steady = (to.monotonic_ms as f64 - from.monotonic_ms as f64) / 1e3;

@@ -1,4 +1,4 @@
-//! What a referee would ask of a run that is no finding: how it was played, in numbers.
+//! Figures on how a run was played. They are not findings.
 
 use serde::Serialize;
 
@@ -7,7 +7,7 @@ use novamind_record::trajectory::record::{Activity, Outcome};
 use novamind_record::trajectory::{Record, Trajectory};
 use novamind_session::{Attendance, SittingCount};
 
-/// How a run of a study was played.
+/// Figures on how a run of a study was played.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RunFacts {
     /// Run.
@@ -16,33 +16,33 @@ pub struct RunFacts {
     pub participant: Option<String>,
     /// Condition.
     pub condition: Option<String>,
-    /// It is the practice.
+    /// Whether it is the practice run.
     pub practice: bool,
-    /// When it was created, RFC 3339.
+    /// Time of creation, RFC 3339.
     pub created: String,
-    /// When its last line was written, RFC 3339.
+    /// Time of the last line, RFC 3339.
     pub last_at: String,
-    /// Lines.
+    /// Number of lines.
     pub lines: u64,
-    /// Weeks that ran.
+    /// Number of simulated weeks.
     pub weeks: u32,
-    /// How it ended, where it did.
+    /// Reason of the end; `None` if the run has not ended.
     pub ended: Option<String>,
-    /// Sittings.
+    /// Number of sittings.
     pub sittings: u32,
-    /// Sittings that no line closes: the program was killed, or still plays.
+    /// Number of sittings without a closing line: the program was killed, or is still running.
     pub unclosed_sittings: u32,
-    /// Calls and weeks that were refused.
+    /// Number of rejected calls and weeks.
     pub refusals: u32,
-    /// Weeks in which at least one forecast was filled by the naive projection.
+    /// Number of weeks in which the naive projection filled at least one forecast.
     pub naive_weeks: u32,
-    /// Weeks that were decided in less than ten active seconds.
+    /// Number of weeks that were decided in less than ten active seconds.
     pub fast_weeks: u32,
-    /// Characters that came from the clipboard; none of a run that was never open in the console, which sees them.
+    /// Number of pasted characters; `None` if the run was never open in the console, because only the console detects them.
     pub pasted: Option<u64>,
-    /// Attention checks that were not answered as expected.
+    /// Number of attention checks that were not answered as expected.
     pub failed_checks: u32,
-    /// Longest time between two lines that follow each other, seconds.
+    /// Longest time between successive lines, seconds.
     pub longest_gap: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Recorded views of the hidden state of a seed that sessions still played.
+//! Recorded views of the hidden state of a seed whose sessions had not ended.
 
 use super::run_record::RunRecord;
 use super::{AuditFinding, AuditKind};
@@ -14,13 +14,13 @@ use novamind_session::lines_afterwards;
 struct HiddenView {
     seconds: f64,
     at: String,
-    /// Number of the line, from 1; `None` for a debug run, which shows hidden state from its creation on.
+    /// Number of the line, from 1; `None` for a debug run, which shows hidden state from its creation.
     line: Option<u64>,
     words: String,
 }
 
-/// Returns a finding for each run that showed the hidden state of a session's seed before that session was over. The
-/// record does not say who looked.
+/// Returns a finding for each run that showed the hidden state of a session's seed before that session ended. The record
+/// does not identify the viewer.
 pub(super) fn views(study: &Study, runs: &[&RunRecord]) -> Vec<AuditFinding> {
     let sessions: Vec<(&RunRecord, &Manifest, Option<f64>)> =
         runs.iter().filter_map(|run| session(study, run)).collect();
@@ -41,7 +41,7 @@ pub(super) fn views(study: &Study, runs: &[&RunRecord]) -> Vec<AuditFinding> {
             return None;
         }
         let words = format!(
-            "{} of seed {}; sessions of that seed that were not over: {}",
+            "{} of seed {}; sessions of that seed that had not ended: {}",
             view.words,
             manifest.seed,
             labels.join(", ")
@@ -58,7 +58,7 @@ pub(super) fn views(study: &Study, runs: &[&RunRecord]) -> Vec<AuditFinding> {
     runs.iter().filter_map(finding).collect()
 }
 
-/// Returns the run if it is a session of the study, with the moment at which it was over, if it is.
+/// Returns the run if it is a session of the study, with the time at which it ended, if it has.
 fn session<'a>(study: &Study, run: &'a RunRecord) -> Option<(&'a RunRecord, &'a Manifest, Option<f64>)> {
     run.stamp().filter(|stamp| stamp.digest == study.digest && !stamp.practice)?;
     let end = run.trajectory.as_ref().ok().and_then(|trajectory| trajectory.end());

@@ -30,23 +30,23 @@ use novamind_record::trajectory::{Line, Trajectory};
 use novamind_session::{Integrity, lines_afterwards, verify_sealed};
 use run_record::{RunRecord, runs_in};
 
-/// What an audit of a study says.
+/// The result of an audit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Audit {
-    /// The runs of the study, by participant and run.
+    /// Runs of the study, sorted by participant and run.
     pub runs: Vec<RunFacts>,
-    /// What was found, by run, line and kind.
+    /// Findings, sorted by run, line and kind.
     pub findings: Vec<AuditFinding>,
     /// Number of runs in the folders that belong to studies with another name. They were not examined.
     pub runs_of_other_studies: usize,
-    /// How many came, and what became of them.
+    /// Number of participants by outcome.
     pub visits: VisitSummary,
 }
 
-/// Audits the runs of a study in the folders of runs of its machines, or in copies of them.
+/// Audits the runs of a study in its machines' folders of runs or in copies of them.
 ///
 /// # Errors
-/// The public key of the lab cannot be read.
+/// Fails if the public key of the lab cannot be read.
 pub fn audit(study: &Study, machines: &[PathBuf]) -> Result<Audit, RunError> {
     let records: Vec<Vec<RunRecord>> = machines.iter().map(|base| runs_in(base)).collect();
     let mut audit = Audit {
@@ -88,7 +88,6 @@ pub fn audit(study: &Study, machines: &[PathBuf]) -> Result<Audit, RunError> {
     Ok(audit)
 }
 
-/// A finding that a participant finished, and their run is gone.
 fn run_gone(visit: &VisitLine) -> AuditFinding {
     AuditFinding {
         kind: AuditKind::Missing,
@@ -96,19 +95,18 @@ fn run_gone(visit: &VisitLine) -> AuditFinding {
         participant: Some(visit.label.clone()),
         line: None,
         at: visit.at.clone(),
-        words: format!("{VISITS} says that this participant finished, and there is no run of theirs"),
+        words: format!("{VISITS} records that this participant finished, but there is no run of theirs"),
     }
 }
 
-/// A finding that there is no run to audit.
 fn nothing_examined(study: &Study, runs: &[&RunRecord], machines: &[PathBuf]) -> Option<AuditFinding> {
     if runs.iter().any(|run| run.is_of(&study.digest)) {
         return None;
     }
     let folders: Vec<String> = machines.iter().map(|folder| folder.display().to_string()).collect();
     let words = format!(
-        "no run with the protocol digest {} is in {}: check the folders and the protocol. Of archives only \
-         the signature is checked",
+        "no run with the protocol digest {} is in {}. Check the folders and the protocol. Of archives, only the \
+         signature is checked",
         study.short_digest(),
         folders.join(", ")
     );
@@ -122,7 +120,7 @@ fn nothing_examined(study: &Study, runs: &[&RunRecord], machines: &[PathBuf]) ->
     })
 }
 
-/// A finding about a run that could not be examined although it may belong to the study.
+/// Returns a finding on a run that could not be examined although it may belong to the study.
 fn not_examined(study: &Study, run: &RunRecord) -> Option<AuditFinding> {
     let (kind, at, words) = match (&run.manifest, run.stamp()) {
         (None, _) => {
@@ -133,8 +131,8 @@ fn not_examined(study: &Study, run: &RunRecord) -> Option<AuditFinding> {
             if stamp.name == study.protocol.name && stamp.digest != study.digest =>
         {
             let words = format!(
-                "it was played under the protocol digest {}, not {}. It was not examined: audit it with the folder of \
-                 the study that has its digest",
+                "it was played under the protocol digest {}, not {}. It was not examined. Audit it with the study \
+                 folder that has its digest",
                 shortened(&stamp.digest),
                 study.short_digest()
             );
@@ -146,7 +144,7 @@ fn not_examined(study: &Study, run: &RunRecord) -> Option<AuditFinding> {
     Some(AuditFinding { kind, run: run.id.clone(), participant, line: None, at, words })
 }
 
-/// One run, and all runs of its machine.
+/// A run and all runs of its machine.
 struct Inspection<'a> {
     study: &'a Study,
     machine: &'a [RunRecord],
@@ -193,7 +191,7 @@ impl Inspection<'_> {
         found
     }
 
-    /// Lines that were kept beside the trajectory, because it could not take them.
+    /// Returns findings on files with lines that could not be appended to the trajectory.
     fn unsaved(&self) -> Vec<AuditFinding> {
         let entries = std::fs::read_dir(&self.run.folder).into_iter().flatten().flatten();
         let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
@@ -204,7 +202,7 @@ impl Inspection<'_> {
         unsaved.map(|name| self.finding(AuditKind::Unsaved, None, "", words(name))).collect()
     }
 
-    /// Whether the lines lead to the states that they record.
+    /// Returns a finding if simulation does not reproduce the recorded states.
     fn simulated(&self) -> Option<AuditFinding> {
         let problem = verify_sealed(&self.run.folder.join("trajectory.jsonl"), &self.study.seal_key).err()?;
         let line = match &problem {
@@ -214,7 +212,7 @@ impl Inspection<'_> {
         Some(self.finding(AuditKind::NotReached, line, "", problem.to_string()))
     }
 
-    /// Whether the lines go as far as database and snapshot remember.
+    /// Returns a finding if the database or the snapshot contains lines that the trajectory lacks.
     fn beside_database(&self, trajectory: &Trajectory) -> Option<AuditFinding> {
         let manifest = self.run.manifest.as_ref()?;
         let path = self.run.folder.join("trajectory.jsonl");
@@ -227,7 +225,7 @@ impl Inspection<'_> {
         }
     }
 
-    /// What `run.toml` says beside the first line.
+    /// Returns findings on contradictions between `run.toml` and the first line.
     fn manifest(&self) -> Vec<AuditFinding> {
         let told = self.run.manifest.iter();
         told.flat_map(|told| departures_of_file(&self.run.folder, told))
@@ -235,7 +233,7 @@ impl Inspection<'_> {
             .collect()
     }
 
-    /// Participant, seed, condition, rules and consent beside what the study lays down.
+    /// Returns findings if participant, seed, condition, rules or consent differ from the study.
     fn assigned(&self, trajectory: &Trajectory) -> Vec<AuditFinding> {
         let (Some(manifest), Some(first)) = (&self.run.manifest, trajectory.lines.first()) else {
             return Vec::new();
@@ -249,19 +247,19 @@ impl Inspection<'_> {
             .and_then(Path::file_name)
             .map(|name| name.to_string_lossy().into_owned());
         if folder.as_deref() != Some(label.as_str()) {
-            wrong.push(format!("the run of {label} lies in the folder {}", folder.unwrap_or_default()));
+            wrong.push(format!("the run of {label} is in the folder {}", folder.unwrap_or_default()));
         }
-        // Earlier builds recorded one more setting, which changed nothing that a run depends on.
+        // Earlier builds recorded `code_words`, which does not affect a run.
         let rules = SessionRules { code_words: None, ..manifest.recorded_rules() };
         if rules != self.study.rules() {
-            wrong.push("it was played by other rules than those of the protocol".to_owned());
+            wrong.push("its rules differ from those of the protocol".to_owned());
         }
         if self.study.consent.is_some() && manifest.consent.is_none() {
-            wrong.push("nobody has agreed to the text of the study".to_owned());
+            wrong.push("it records no consent to the text of the study".to_owned());
         }
         let stamp = manifest.study.as_ref();
         match self.study.assignment.as_ref().map(|assignment| assignment.place(&label)) {
-            Some(None) => wrong.push(format!("{label} is no label of the assignment")),
+            Some(None) => wrong.push(format!("{label} is not in the assignment")),
             Some(Some(place)) => {
                 let practice = stamp.is_some_and(|stamp| stamp.practice);
                 let seed = place.seed.filter(|seed| !practice && *seed != manifest.seed);
@@ -283,14 +281,14 @@ impl Inspection<'_> {
     }
 
     fn clock(&self, trajectory: &Trajectory, afterwards: &[Line]) -> Vec<AuditFinding> {
-        // The sitting in which a run ends is closed by a line after the end.
+        // The closing line of the last sitting follows the end of the run.
         let changes = clock::clock_changes(trajectory.lines.iter().chain(afterwards)).into_iter();
         changes
             .map(|(line, words)| self.finding(AuditKind::Clock, Some(line.seq + 1), &line.at, words))
             .collect()
     }
 
-    /// Older runs of the same participant that the first line does not list.
+    /// Returns findings on older runs of the participant that the first line does not list.
     fn earlier_runs(&self) -> Vec<AuditFinding> {
         let Some(manifest) = &self.run.manifest else { return Vec::new() };
         let began = seconds(&manifest.created);
@@ -313,7 +311,7 @@ impl Inspection<'_> {
     }
 }
 
-/// Participants with more than one session, and runs that lie in two places.
+/// Returns a finding for each participant with more than one session.
 fn second_sessions(study: &Study, runs: &[&RunRecord]) -> Vec<AuditFinding> {
     let mut sessions: BTreeMap<String, Vec<&RunRecord>> = BTreeMap::new();
     for run in runs.iter().filter(|run| run.is_of(&study.digest)) {

@@ -9,7 +9,7 @@ use novamind_record::folder::runs::all_run_folders;
 use novamind_record::stamp::StudyStamp;
 use novamind_record::trajectory::Trajectory;
 
-/// A run as its folder records it.
+/// A run as read from its folder.
 pub(super) struct RunRecord {
     pub id: String,
     pub folder: PathBuf,
@@ -35,22 +35,21 @@ impl RunRecord {
         let trajectory = Trajectory::read(&path);
         let first = trajectory.as_ref().ok().and_then(|trajectory| trajectory.lines.first());
         let manifest = Manifest::of_start(&path, first).ok();
-        // What cannot be read may still say whose it was.
+        // The manifest may identify a run whose trajectory cannot be read.
         let manifest = manifest.or_else(|| Manifest::read(&folder).ok());
         RunRecord { id, folder, manifest, trajectory }
     }
 
-    /// Returns its study, if its record names one.
     pub(super) fn stamp(&self) -> Option<&StudyStamp> {
         self.manifest.as_ref()?.study.as_ref()
     }
 
-    /// Whether its study has this digest.
+    /// Whether the run belongs to the study with this digest.
     pub(super) fn is_of(&self, study: &str) -> bool {
         self.stamp().is_some_and(|stamp| stamp.digest == study)
     }
 
-    /// Whether it belongs to a study with another name.
+    /// Whether the run belongs to a study with another name.
     pub(super) fn is_of_another_study(&self, study: &Study) -> bool {
         self.stamp().is_some_and(|stamp| stamp.digest != study.digest && stamp.name != study.protocol.name)
     }

@@ -179,7 +179,7 @@ fn ctrl_c_keeps_what_is_done_and_the_same_command_goes_on() {
     assert_eq!((output.status.code(), output.stdout.len()), (Some(130), 0), "{told}");
     let done = kept_runs(&home, ".jsonl");
     assert!(
-        told.contains(&format!("stopped: {done} of 20 runs are kept, and the same command goes on")),
+        told.contains(&format!("stopped: {done} of 20 runs are stored; the same command resumes")),
         "{told}"
     );
     let rest = home.run(&["lab", "study", &file]);

@@ -49,8 +49,8 @@ pub fn tries_exhibit(title: String, tries: &[Try]) -> Exhibit {
         let bankrupt = finished.iter().filter(|run| run.is_bankrupt).count();
         let lives: Vec<f64> = finished.iter().map(|run| f64::from(run.survival_days)).collect();
         exhibit.notes.push(format!(
-            "Bankrupt: {bankrupt} of {}; mean life {:.1} days. `novamind lab table` sets runs of the published length and start \
-             beside the published results.",
+            "Bankrupt: {bankrupt} of {}; mean life {:.1} days. `novamind lab table` compares runs that have the published length and starting \
+             cash with published ones.",
             finished.len(),
             Sample::of(&lives).mean
         ));

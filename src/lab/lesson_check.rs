@@ -76,8 +76,9 @@ impl LessonCheck {
         let reached = self.bad.iter().filter(|play| play.goals.iter().all(|goal| goal.met));
         let reached = reached.map(|play| format!("seed {}: the bad play reaches every goal", play.seed));
         let unmet = self.bad.iter().filter(|play| !play.pitfalls.contains(&self.pitfall));
-        let unmet = unmet
-            .map(|play| format!("seed {}: the bad play does not trigger pitfall {}", play.seed, self.pitfall));
+        let unmet = unmet.map(|play| {
+            format!("seed {}: the bad play does not trigger pitfall {}", play.seed, self.pitfall)
+        });
         let wrong = self.figures.iter().filter(|figure| !figure.holds()).map(|figure| {
             let FigureResult { stated, mean } = figure;
             format!("{} is stated as {} but is {}", stated.name, stated.written(), stated.write(*mean))

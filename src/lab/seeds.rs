@@ -33,10 +33,7 @@ pub fn parse_seeds(text: &str) -> Result<Seeds, String> {
     let count = seeds.last - seeds.first + 1;
     if count > MOST_SEEDS {
         let (holds, most) = (grouped(count as f64, 0), grouped(MOST_SEEDS as f64, 0));
-        return Err(format!(
-            "{}..{} has {holds} seeds; the maximum is {most}",
-            seeds.first, seeds.last
-        ));
+        return Err(format!("{}..{} has {holds} seeds; the maximum is {most}", seeds.first, seeds.last));
     }
     Ok(seeds)
 }

@@ -168,8 +168,7 @@ fn curves(axis: &Axis<'_>) -> Graph {
     });
     Graph {
         title: axis.caption.clone(),
-        summary: "Mean subscribers by day on a logarithmic axis, one line per competitor setting"
-            .to_owned(),
+        summary: "Mean subscribers by day on a logarithmic axis, one line per competitor setting".to_owned(),
         across: GraphAxis { label: "day", scale: AxisScale::Whole },
         up: GraphAxis { label: "subscribers", scale: AxisScale::Logarithmic },
         series: series.collect(),

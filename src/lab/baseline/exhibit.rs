@@ -245,8 +245,7 @@ fn spread(board: &Board<'_>) -> Graph {
     };
     Graph {
         title: "Final cash of the configurations, highest first".to_owned(),
-        summary: "Median and quartiles of final cash by the configuration's rank in the table"
-            .to_owned(),
+        summary: "Median and quartiles of final cash by the configuration's rank in the table".to_owned(),
         across: GraphAxis { label: "rank in the table", scale: AxisScale::Whole },
         up: GraphAxis { label: "dollars", scale: AxisScale::Linear },
         series: vec![

@@ -313,8 +313,7 @@ fn errors_and_lives(runs: &[ObservedRun]) -> Vec<(f64, f64)> {
 
 fn correlation_in_words(runs: &[ObservedRun]) -> String {
     let pairs = errors_and_lives(runs);
-    let told =
-        "Error of 4-week forecasts filed before the first four weeks, against survival";
+    let told = "Error of 4-week forecasts filed before the first four weeks, against survival";
     match rank_correlation(&pairs) {
         Some(value) => format!("{told}: rank correlation {value:.2} over {} runs.", pairs.len()),
         None => format!("{told}: no correlation. It needs at least three runs that differ in both."),

@@ -7,7 +7,8 @@ impl ConsistencyCheck {
     /// Returns a row per claim and the results of the two plays.
     pub fn exhibit(&self) -> Exhibit {
         let [one, other] = &self.policies;
-        let mut exhibit = Exhibit::of(format!("Common random draws of policies {one} and {other}"), self.claims());
+        let mut exhibit =
+            Exhibit::of(format!("Common random draws of policies {one} and {other}"), self.claims());
         exhibit.tables.push(self.plays());
         exhibit.notes.extend(self.claims.iter().filter_map(|own| {
             let first = own.first_difference.as_ref()?;
@@ -68,6 +69,9 @@ impl ConsistencyCheck {
             ]
         };
         let rows = self.policies.iter().zip(&self.ends).map(row).collect();
-        Tabulation { rows, ..Tabulation::new("plays", "Results of the two policies on the first seed", columns) }
+        Tabulation {
+            rows,
+            ..Tabulation::new("plays", "Results of the two policies on the first seed", columns)
+        }
     }
 }

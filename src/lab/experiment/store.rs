@@ -55,7 +55,9 @@ impl ResultStore {
         }
         // Devices and pipes cannot be read to an end.
         if std::fs::metadata(path).is_ok_and(|found| !found.is_file()) {
-            return Err(io::Error::other("it is not a regular file. Delete it to store results in a new file"));
+            return Err(io::Error::other(
+                "it is not a regular file. Delete it to store results in a new file",
+            ));
         }
         let file = OpenOptions::new().create(true).read(true).append(true).open(path)?;
         Ok(ResultStore { path: path.to_owned(), file: Mutex::new(file) })

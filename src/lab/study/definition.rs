@@ -239,8 +239,7 @@ fn policies(
 /// Checks that scenarios are unique and that the list is not empty.
 fn check_scenarios(source: &StudySource<'_>, own: &StudyText) -> Result<(), ParameterError> {
     if own.scenarios.is_empty() && line_of_key(source.text, "scenarios").is_some() {
-        let problem =
-            "the list is empty; leave the key out to play each policy's own scenario";
+        let problem = "the list is empty; leave the key out to play each policy's own scenario";
         return Err(source.wrong("scenarios", problem));
     }
     let twice = |at: &usize| own.scenarios[..*at].contains(&own.scenarios[*at]);
@@ -301,8 +300,10 @@ fn varied(source: &StudySource<'_>, own: &StudyText) -> Result<Varied, Parameter
             refuse_said_elsewhere(source, "overrides", given.iter().map(|(key, _)| key))?;
             let overrides: Vec<_> = given.into_iter().map(|(key, value)| (key, value_text(value))).collect();
             if let Some(twin) = sets.iter().find(|other| other.overrides == overrides) {
-                let problem =
-                    format!("{} sets the same parameters as {}: their runs would be identical", set.name, twin.labels[0]);
+                let problem = format!(
+                    "{} sets the same parameters as {}: their runs would be identical",
+                    set.name, twin.labels[0]
+                );
                 return Err(source.wrong(&format!("overrides.{at}"), problem));
             }
             sets.push(Level { labels: vec![set.name.clone()], overrides });
@@ -321,7 +322,11 @@ fn varied(source: &StudySource<'_>, own: &StudyText) -> Result<Varied, Parameter
             return Err(source.wrong_override("grid", &key, "a grid parameter needs a list of values"));
         };
         if values.is_empty() {
-            return Err(source.wrong_override("grid", &key, "the list is empty; add a value or remove the key"));
+            return Err(source.wrong_override(
+                "grid",
+                &key,
+                "the list is empty; add a value or remove the key",
+            ));
         }
         if let Some(at) =
             (0..values.len()).find(|at| values[..*at].iter().any(|own| is_same(own, &values[*at])))

@@ -51,7 +51,8 @@ impl Shards {
             }
         }
         let Some((first, study)) = found.first().cloned() else {
-            let nothing = "no shards found: write them with `lab study FILE --shard 1/N --out DIR`".to_owned();
+            let nothing =
+                "no shards found: write them with `lab study FILE --shard 1/N --out DIR`".to_owned();
             return Err(MergeError(if problems.is_empty() { vec![nothing] } else { problems }));
         };
         let mut by_number: BTreeMap<usize, PathBuf> = BTreeMap::new();

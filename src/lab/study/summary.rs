@@ -65,8 +65,7 @@ pub fn summary(plan: &StudyPlan, results: &[RunResult]) -> Exhibit {
     );
     if differs {
         exhibit.notes.push(
-            "The arms start with different cash, so final cash does not compare their earnings."
-                .to_owned(),
+            "The arms start with different cash, so final cash does not compare their earnings.".to_owned(),
         );
     }
     exhibit.notes.extend(played_alike(plan, results));

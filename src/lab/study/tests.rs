@@ -127,7 +127,11 @@ fn wrong_studies_name_line_and_key() {
             Some(6),
             ["demand_surge.probability", "a list"],
         ),
-        (format!("{begin}\n[grid]\n\"leads.saturation_base\" = []\n"), Some(6), ["leads", "the list is empty"]),
+        (
+            format!("{begin}\n[grid]\n\"leads.saturation_base\" = []\n"),
+            Some(6),
+            ["leads", "the list is empty"],
+        ),
         (
             format!("{begin}\n[grid]\n\"leads.saturation_base\" = [1, 1.0]\n"),
             Some(6),

@@ -143,9 +143,9 @@ fn shards_of_which_one_was_killed_and_repeated_are_the_study_that_was_not_split(
     assert_eq!(
         kept_runs(&home, &own),
         25 + usize::from(has_half_a_line(&home, &own)),
-        "no run is played twice"
+        "every run is played once"
     );
-    assert_eq!(kept_runs(&home, ".1-of-4.jsonl"), 25, "the others are not played again");
+    assert_eq!(kept_runs(&home, ".1-of-4.jsonl"), 25, "complete shards are not repeated");
     let merged = home.run(&["lab", "merge", &folder]);
     assert_eq!((merged.code, merged.err.as_str()), (0, ""));
     assert_eq!(merged.out.as_bytes(), whole.out.as_bytes());
@@ -184,7 +184,7 @@ fn ctrl_c_keeps_what_is_done_and_the_same_command_goes_on() {
     );
     let rest = home.run(&["lab", "study", &file]);
     assert_eq!((rest.code, rest.out), (0, whole.out));
-    assert_eq!(kept_runs(&home, ".jsonl"), 20, "no run is played twice");
+    assert_eq!(kept_runs(&home, ".jsonl"), 20, "every run is played once");
 }
 
 #[test]
@@ -201,15 +201,15 @@ fn a_full_disk_loses_nothing_that_was_kept() {
         );
         said(home.command("sh").args(["-c", &script]), "")
     };
-    limited(8, "--jobs 1").fails(1, &["few.", ".jsonl", "File too large", "is safe"]);
+    limited(8, "--jobs 1").fails(1, &["few.", ".jsonl", "File too large", "are safe"]);
     let before = kept_runs(&home, ".jsonl");
     assert!((1..20).contains(&before), "{before}");
     let last = fs::read(&kept(&home)[0]).expect("runs");
-    assert!(last.ends_with(b"\n"), "what did not fit is taken back");
+    assert!(last.ends_with(b"\n"), "a partial line is removed");
     assert_eq!(home.run(&["lab", "study", &file]).out, whole, "there is room again");
     assert_eq!(kept_runs(&home, ".jsonl"), 20);
     limited(1, "").fails(1, &["few.csv", "File too large", "runs are kept"]);
-    assert!(!Path::new(&into).exists(), "half a table is none");
+    assert!(!Path::new(&into).exists(), "no partial table is written");
     let told = home.run(&["lab", "study", &file, "--out", &into]);
     assert_eq!(told.code, 0, "{}", told.err);
     assert_eq!(fs::read_to_string(&into).expect("rows"), whole);
@@ -225,7 +225,7 @@ fn places_that_cannot_be_written_are_told_before_anything_is_played() {
     home.run(&["lab", "study", &file, "--shard", "1/2", "--out", &inside]).fails(1, &["study.toml/shards"]);
     assert_eq!(kept_runs(&home, ".jsonl"), 0);
     let wrong = home.run(&["lab", "study", &file, "--shard", "3/2", "--out", "x"]);
-    assert!(wrong.code == 2 && wrong.err.contains("3/2 is no shard"), "{}", wrong.err);
+    assert!(wrong.code == 2 && wrong.err.contains("3/2 is not a shard"), "{}", wrong.err);
     fs::write(home.runs().join(".lab"), "a file").expect("a file");
     home.run(&["lab", "study", &file]).fails(1, &[".lab"]);
     let wrong = study(&home, "name = \"x\"\npolicies = [\"P0\"]\nseeds = 1\nday = 4\n");

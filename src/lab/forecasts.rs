@@ -101,7 +101,7 @@ mod tests {
                 let forecast = forecasts.iter().find(|one| one.horizon_days == horizon).expect("filed");
                 let outcome = session.cash_by_day()[(day + horizon) as usize];
                 let inside = (forecast.lower..=forecast.upper).contains(&outcome);
-                assert_eq!(inside, own.held, "day {day}, {horizon} ahead: {outcome} beside {forecast:?}");
+                assert_eq!(inside, own.held, "day {day}, {horizon} ahead: {outcome}, {forecast:?}");
                 compared += 1;
             }
         }

@@ -104,6 +104,6 @@ mod tests {
             novamind_session::NewRun { storage: Storage::Runs(runs.path().to_owned()), ..Default::default() };
         let session = Session::create(new, &Configuration::shipped()).expect("a run");
         let closed = play_opponents(session.folder().expect("a folder"), &Configuration::shipped(), &|| true);
-        assert_eq!(closed.expect_err("it goes on").code, "not_in_this_mode");
+        assert_eq!(closed.expect_err("it is unfinished").code, "not_in_this_mode");
     }
 }

@@ -256,7 +256,7 @@ pub(super) fn decide(policy: &Policy, seed: u64, session: &mut Session) -> Resul
     decide_telling(policy, seed, session, &mut |_| ())
 }
 
-/// Makes the calls of a policy and passes every response to `tell`.
+/// Makes the calls of a policy and passes every response to a callback.
 pub(super) fn decide_telling(
     policy: &Policy,
     seed: u64,

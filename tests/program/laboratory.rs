@@ -43,7 +43,8 @@ fn what_needs_no_run_is_told_in_every_form() {
     assert!(own(development, &off) < own(development, &[]), "without competitors development is cheap");
     let said = json(&home, &["lab", "bound", "--scenario", "competitor-off"]).to_string();
     assert!(
-        said.contains("no competitors: the current parameters have none") && !said.contains("seeds of the simulator"),
+        said.contains("no competitors: the current parameters have none")
+            && !said.contains("seeds of the simulator"),
         "{said}"
     );
     // With slack 1, the estimate is higher without competitors.

@@ -113,7 +113,7 @@ fn groups(account: &BoundAccount) -> Tabulation {
 }
 
 fn assumptions(account: &BoundAccount) -> Tabulation {
-    let columns = vec![Column::words("assumption", "assumption"), Column::words("meaning", "what it says")];
+    let columns = vec![Column::words("assumption", "assumption"), Column::words("meaning", "meaning")];
     let mut table = Tabulation::new("assumptions", "Assumptions", columns);
     let rows = account.premises.assumptions(account.has_rivals);
     table.rows = rows.into_iter().map(|(name, text)| vec![Datum::words(name), Datum::words(text)]).collect();

@@ -421,7 +421,7 @@ mod tests {
     }
 
     fn check(spec: &ConsistencySpec) -> ConsistencyCheck {
-        let policies = contrasting_policies().expect("the shipped ones");
+        let policies = contrasting_policies().expect("the bundled policies");
         check_consistency(&policies, spec, &Configuration::shipped(), &|| ()).expect("it plays")
     }
 

@@ -5,7 +5,7 @@ use super::*;
 use novamind_record::folder::configuration::Configuration;
 
 fn arm(name: &str, policy: &str) -> Arm {
-    let policy = Policy::find(policy, &Configuration::shipped()).expect("a shipped policy");
+    let policy = Policy::find(policy, &Configuration::shipped()).expect("a bundled policy");
     let mut own = Arm::new(name, policy);
     own.spec.days = Some(14);
     own
@@ -66,7 +66,7 @@ fn what_is_known_is_not_played_again_and_is_the_same() {
     renamed.arms[0].spec.overrides = surges("0.0");
     assert_eq!(conduct(&renamed, &path, false, 99).1, 0, "the policy has no surges either");
     renamed.arms[0].spec.overrides = surges("0.25");
-    assert_eq!(conduct(&renamed, &path, false, 99).1, 3, "what is set by name wins");
+    assert_eq!(conduct(&renamed, &path, false, 99).1, 3, "explicit overrides take precedence");
     renamed.wanted.daily = true;
     let (daily, played) = conduct(&renamed, &path, false, 99);
     assert_eq!(played, 6);

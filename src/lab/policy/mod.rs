@@ -265,7 +265,7 @@ mod tests {
     fn all_shipped_policies_are_read() {
         let configuration = Configuration::shipped();
         for (name, _) in novamind_assets::policies() {
-            let policy = Policy::find(name, &configuration).expect("a shipped policy");
+            let policy = Policy::find(name, &configuration).expect("a bundled policy");
             assert_eq!(policy.name, name);
             assert!(!policy.description.is_empty());
             let surges = (!STRONG.contains(&name)).then_some(name == "P1s");

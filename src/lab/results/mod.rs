@@ -379,7 +379,7 @@ mod tests {
     #[test]
     fn the_idle_company_is_played_and_beats_thirteen_of_sixteen() {
         let configuration = Configuration::shipped();
-        let policy = Policy::find(IDLE_POLICY, &configuration).expect("a shipped policy");
+        let policy = Policy::find(IDLE_POLICY, &configuration).expect("a bundled policy");
         let idle = idle_company(&policy, &configuration).expect("it plays");
         assert_eq!((idle.survival_days, idle.is_bankrupt, idle.score.round()), (500, false, 957_500.0));
         let table = ResultsTable::of(&[], &[], &idle, ResultsBy::Participant);

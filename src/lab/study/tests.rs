@@ -13,7 +13,7 @@ fn write(folder: &Path, text: &str) -> PathBuf {
 
 const GOOD: &str = r#"
 name = "copying"
-description = "how much rivals copy"
+description = "effect of copying"
 policies = ["P0", "mine.toml"]
 scenarios = ["default", "competitor-hard"]
 seeds = "1..3"

@@ -1,5 +1,5 @@
-//! Tests that texts for new players do not reveal good settings: tour, README, documents, pictures and examples contain none of the
-//! numbers of a bundled policy.
+//! Tests that texts for new players do not reveal good settings: tour, README, documents, pictures and examples do not contain
+//! the numbers of a bundled policy.
 
 use std::fs;
 use std::path::{Path, PathBuf};

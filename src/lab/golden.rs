@@ -262,7 +262,6 @@ impl GoldenComparison {
 }
 
 impl ComparedCell {
-    /// Returns the standard error of the reference mean.
     fn standard_error(&self) -> f64 {
         self.reference.std / (self.reference.count.max(1) as f64).sqrt()
     }

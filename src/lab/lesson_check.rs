@@ -114,7 +114,6 @@ pub fn check_plays(lesson: &Arc<Lesson>, seeds: &[u64]) -> Result<LessonCheck, R
     })
 }
 
-/// Plays all parts of a lesson on a seed.
 fn played(lesson: &Arc<Lesson>, play: &ReferencePlay, seed: u64) -> Result<PlayResult, RunError> {
     let mut result = PlayResult { seed, goals: Vec::new(), pitfalls: Vec::new() };
     for (part, own) in lesson.plan.parts.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use novamind_base::notation::grouped;
 
-/// Maximum number of seeds in a range; more is probably a typing error.
+/// Maximum number of seeds in a range. Larger ranges are probably typing errors.
 const MOST_SEEDS: u64 = 1_000_000;
 
 /// A seed or an inclusive range of seeds.

@@ -105,7 +105,6 @@ fn arms(axis: &Axis<'_>, day: u32) -> Tabulation {
     table
 }
 
-/// Returns the paired differences between neighboring settings.
 fn steps(axis: &Axis<'_>, day: u32) -> Tabulation {
     let columns = vec![
         Column::words("step", "from, to"),
@@ -207,7 +206,6 @@ fn short_runs(short: &[ShortRun<'_>]) -> Tabulation {
     table
 }
 
-/// Returns one row per run, for `--csv` and `--json`.
 fn every_run(axes: &[Axis<'_>], short: &[ShortRun<'_>], day: u32) -> Tabulation {
     let columns = vec![
         Column::words("axis", "axis"),

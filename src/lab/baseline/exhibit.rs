@@ -188,7 +188,6 @@ fn labels(grid: &Grid, first: &[usize]) -> String {
     }
 }
 
-/// Returns one row per run, for `--csv` and `--json`.
 fn every_run(grid: &Grid, board: &Board<'_>) -> Tabulation {
     let mut columns = head(grid);
     columns.extend([
@@ -217,7 +216,6 @@ fn every_run(grid: &Grid, board: &Board<'_>) -> Tabulation {
     table
 }
 
-/// Returns a graph of the final cash of each configuration on one seed.
 fn bars(board: &Board<'_>) -> Graph {
     let cash =
         |(at, arm): (usize, &usize)| board.runs(*arm).first().map(|run| ((at + 1) as f64, run.cash.max(0.0)));
@@ -234,7 +232,6 @@ fn bars(board: &Board<'_>) -> Graph {
     }
 }
 
-/// Returns a graph of the final-cash quartiles of each configuration.
 fn spread(board: &Board<'_>) -> Graph {
     let quartiles: Vec<Quartiles> = (board.order.iter())
         .filter_map(|arm| Quartiles::of(&board.results.of(*arm, |run| run.cash)))

@@ -285,7 +285,6 @@ fn lay_over(below: &mut Table, above: Table) {
     }
 }
 
-/// Parses the policy in a table.
 fn policy_of(mut table: Table, name: &str) -> Result<Policy, String> {
     table.insert("name".to_owned(), Value::String(name.to_owned()));
     let text = toml::to_string(&table).map_err(|error| error.to_string())?;

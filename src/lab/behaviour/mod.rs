@@ -75,7 +75,6 @@ const FIGURES: [(&str, &str, &str); 10] = [
     ("\"if\" in notes", "", "\"if\", notes"),
 ];
 
-/// Maximum number of tools listed.
 const MOST_TOOLS: usize = 10;
 
 /// Returns the behavior tables and graphs of some runs.
@@ -141,7 +140,6 @@ fn who(run: &ObservedRun) -> Option<String> {
     run.book.player()
 }
 
-/// Returns the ten most-used tools over all runs.
 fn tools(runs: &[ObservedRun]) -> Tabulation {
     let mut names: Vec<&str> = runs
         .iter()
@@ -184,10 +182,9 @@ fn tools(runs: &[ObservedRun]) -> Tabulation {
     Tabulation { rows, ..Tabulation::new("tools", "Most-used tools", columns) }
 }
 
-/// Percentages of a run at which customers are listed.
+/// Shares of a run at which customers are listed.
 const MOMENTS: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
 
-/// Returns the customers of each group at five points of each run.
 fn customers(runs: &[ObservedRun]) -> Tabulation {
     let mut columns = vec![Column::words("run", "run"), Column::words("group", "group")];
     columns.extend(MOMENTS.map(|share| {
@@ -248,7 +245,6 @@ fn cash_range(runs: &[ObservedRun]) -> Tabulation {
     Tabulation { rows, ..Tabulation::new("cash_range", "Cash, all curves on one scale", columns) }
 }
 
-/// Returns the cash at the end of every day.
 fn cash(runs: &[ObservedRun]) -> Tabulation {
     let columns = vec![
         Column::words("run", "run"),
@@ -272,14 +268,12 @@ fn cash(runs: &[ObservedRun]) -> Tabulation {
     Tabulation { rows, is_for_programs: true, ..Tabulation::new("cash", "Cash by day", columns) }
 }
 
-/// Returns the runs sorted by participant.
 fn by_participant(runs: &[ObservedRun]) -> Vec<&ObservedRun> {
     let mut ordered: Vec<&ObservedRun> = runs.iter().collect();
     ordered.sort_by_key(|run| who(run));
     ordered
 }
 
-/// Returns a row per saved version of the notes.
 fn notes(runs: &[ObservedRun]) -> Tabulation {
     let columns = vec![
         Column::words("run", "run"),
@@ -301,7 +295,7 @@ fn notes(runs: &[ObservedRun]) -> Tabulation {
     Tabulation { rows, ..Tabulation::new("notes", "Versions of the notes", columns) }
 }
 
-/// Describes the correlation of first-weeks forecast error and survival over the runs that have both.
+/// Returns the forecast error of the first weeks and the survival of each run that has both.
 fn errors_and_lives(runs: &[ObservedRun]) -> Vec<(f64, f64)> {
     let of = |name, horizon, run: &ObservedRun| figure_of(name, horizon)?.value(&run.book);
     runs.iter()

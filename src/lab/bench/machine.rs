@@ -4,7 +4,6 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
 
-/// Steps of the calibration loop.
 const STEPS: u64 = 60_000_000;
 
 /// Returns the seconds that a fixed amount of integer and floating-point work takes on one processor, so that figures of

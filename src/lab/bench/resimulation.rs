@@ -8,11 +8,8 @@ use super::{Bench, BenchError, BenchFigure, Samples, Unit};
 use novamind_insight::{Causes, ConditionProblem, DecisionEdit, OfRecord, WhatIf, folder_of_causes};
 use novamind_session::Session;
 
-/// Subscribers of the smaller company.
 const SMALL: u32 = 20_000;
-/// Subscribers of the larger one.
 const LARGE: u32 = 165_000;
-/// Weeks of a branch.
 const WEEKS: u32 = 12;
 /// Changed decisions of the branches; one more branch keeps the run's decisions.
 const ALTERNATIVES: [&str; 3] = ["set_prices * 0.9", "set_prices * 1.1", "set_daily_spend * 1.1"];

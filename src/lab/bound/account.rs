@@ -107,7 +107,6 @@ impl BoundAccount {
         AccountLine::ALL.into_iter().map(line).collect()
     }
 
-    /// Returns the dollars of a line.
     fn dollars(&self, line: AccountLine, params: &Params) -> f64 {
         let premises = &self.premises;
         match line {

@@ -8,7 +8,6 @@ use novamind_report::ranking::{published, published_terms};
 /// Maximum number of days with cash in the text; longer runs skip weeks.
 const CASH_ROWS: usize = 20;
 
-/// Maximum width of a line of decisions.
 const LINE: usize = 124;
 
 /// Returns the comparison as text: runs in columns if `width` allows, otherwise one row per run.
@@ -143,7 +142,6 @@ fn in_lines(decisions: &[String], width: usize) -> Vec<String> {
     lines
 }
 
-/// Returns the published agents, best first.
 fn agents() -> String {
     let head = ["published agent", "best cash", "mean survival", "turns a week", "targeted development"];
     let mut rows: Vec<Vec<String>> = vec![head.map(str::to_owned).to_vec()];

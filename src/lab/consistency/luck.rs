@@ -89,7 +89,7 @@ pub fn play_for_luck(
 }
 
 impl PlayedLuck {
-    /// Returns the result of an attempt to find a group.
+    /// Records the result of an attempt to find a group.
     fn note_answer(&mut self, answer: &Answer) {
         let Answer::ResearchMarket(attempt) = answer else { return };
         let found = match attempt {
@@ -174,7 +174,6 @@ impl PlayedLuck {
     }
 }
 
-/// Returns numbers as bits.
 fn bits<const COUNT: usize>(values: [f64; COUNT]) -> LuckValue {
     std::array::from_fn(|at| values.get(at).map_or(0, |value| value.to_bits()))
 }

@@ -295,7 +295,6 @@ pub fn check_consistency(
 /// Number of plays per seed.
 pub const PLAYS_OF_A_SEED: u64 = 4;
 
-/// The plays of a seed.
 struct SeedPlays {
     seed: u64,
     one: PlayedLuck,

@@ -63,7 +63,6 @@ pub enum GraphForm {
 /// Characters of the series in a terminal, in order.
 const SIGNS: [char; 16] = ['*', '+', 'o', 'x', '#', '~', '%', '@', '=', '&', 'a', 'b', 'c', 'd', 'e', 'f'];
 
-/// Maximum number of bars in a terminal.
 const MOST_BARS: usize = 40;
 
 impl Graph {

@@ -172,7 +172,6 @@ impl Measure {
     }
 }
 
-/// Text of a missing value.
 const MISSING: &str = "–";
 
 impl Datum {

@@ -5,11 +5,9 @@ use unicode_width::UnicodeWidthStr;
 use super::{Column, Exhibit, Holds, Tabulation};
 use novamind_base::notation::printable;
 
-/// Gap between two columns.
 const GAP: usize = 2;
 /// Minimum width of a text column.
 const LEAST: usize = 12;
-/// Rows of a graph.
 const GRAPH_ROWS: usize = 16;
 
 impl Exhibit {
@@ -106,7 +104,6 @@ impl<'a> Sheet<'a> {
         self
     }
 
-    /// Adds a first column with row numbers.
     fn numbered<'b>(self, columns: &'b [Column]) -> Sheet<'b> {
         let rows = self.rows;
         let numbered = |(at, cells): (usize, Vec<String>)| {

@@ -5,7 +5,6 @@ use std::sync::atomic::AtomicBool;
 use super::{Arm, Conduct, Experiment, ExperimentResults};
 use novamind_record::folder::configuration::Configuration;
 
-/// Plays arms over seeds and returns the results.
 pub fn played(arms: Vec<Arm>, seeds: impl IntoIterator<Item = u64>) -> ExperimentResults {
     let experiment = Experiment::of(arms, seeds);
     let configuration = Configuration::shipped();

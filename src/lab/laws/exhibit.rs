@@ -11,7 +11,6 @@ use novamind_base::notation::grouped;
 use novamind_base::statistics::Sample;
 use novamind_report::plot::LEVELS;
 
-/// Bins of a histogram.
 const BINS: usize = 40;
 /// Characters of a small histogram.
 const SMALL: usize = 12;

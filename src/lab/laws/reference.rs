@@ -7,7 +7,6 @@ use rand_distr::{Exp, LogNormal, Normal, Poisson};
 
 use super::law::{Law, Rounding};
 
-/// Seed of the reference generator.
 const SEED: u64 = 20_000;
 
 impl Law {

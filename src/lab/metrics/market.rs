@@ -4,7 +4,7 @@ use super::{Daily, Day, Kind, by_group, initial, now, push, sum};
 use novamind_world::events::{DealClosed, EndCause, Notice, Post, Sentiment, SubscriptionStatus, ThreadKind};
 use novamind_world::identifiers::{Group, Plan};
 
-/// Averages over deals.
+/// A value that is averaged over deals.
 type PerDeal = fn(&DealClosed) -> f64;
 
 impl Day<'_> {

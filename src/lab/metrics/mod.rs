@@ -141,7 +141,7 @@ impl Collector {
     }
 }
 
-/// Groups with separate figures.
+/// Returns the groups with separate figures.
 fn initial() -> impl Iterator<Item = Group> {
     Group::all().filter(|group| group.initially_known())
 }

@@ -154,7 +154,6 @@ pub const IDLE_POLICY: &str = "P0";
 /// Name of the row of players without a label.
 const UNNAMED: &str = "(no label)";
 
-/// Name of the row of the idle company.
 const IDLE_NAME: &str = "idle company";
 
 /// Plays the idle company on the seed of the published runs.
@@ -231,7 +230,6 @@ impl ResultsTable {
     }
 }
 
-/// Returns the best run by the rule of the published table.
 fn best_of<'a>(runs: &[&'a FinishedRun]) -> Option<&'a FinishedRun> {
     let result = |run: &FinishedRun| (run.score, run.survival_days);
     // Ties: first by name.

@@ -14,7 +14,6 @@ use novamind_record::error::RunError;
 use novamind_record::folder::configuration::{Configuration, DEFAULT_SCENARIO, check_cash, check_days};
 use novamind_world::params::{ParameterError, Params, Replayed, line_of_key};
 
-/// Maximum number of runs in a study.
 const MOST_RUNS: u64 = 1_000_000;
 
 /// A parsed study, in the order of its rows.
@@ -252,7 +251,7 @@ fn check_scenarios(source: &StudySource<'_>, own: &StudyText) -> Result<(), Para
     }
 }
 
-/// Rejects parameters that a study or policy sets by separate keys, because values here would have no effect.
+/// Parameters that a study or policy sets by separate keys. Values in a grid or in overrides would have no effect.
 const SAID_ELSEWHERE: [&str; 3] = ["run.seed", "run.total_days", "initial.initial_cash"];
 
 fn refuse_said_elsewhere<'a>(
@@ -384,7 +383,6 @@ fn seeds(
     }
 }
 
-/// Checks days and cash.
 fn check_terms(source: &StudySource<'_>, own: &StudyText) -> Result<(), ParameterError> {
     own.days.map_or(Ok(()), check_days).map_err(|problem| source.wrong("days", problem))?;
     own.cash.map_or(Ok(()), check_cash).map_err(|problem| source.wrong("cash", problem))?;

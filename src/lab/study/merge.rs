@@ -154,7 +154,6 @@ impl RowReader {
         self.lines.read_until(b'\n', &mut self.line).map(drop)
     }
 
-    /// Returns the run number of the row.
     fn run(&self) -> Option<usize> {
         let cell = self.line.split(|byte| *byte == b',').next()?;
         std::str::from_utf8(cell).ok()?.parse().ok()

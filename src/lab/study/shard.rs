@@ -27,7 +27,6 @@ impl fmt::Display for Shard {
     }
 }
 
-/// Maximum number of shards in a study.
 const MOST_SHARDS: usize = 100_000;
 
 /// Parses `2/4`.

@@ -12,7 +12,6 @@ use novamind_report::count;
 
 /// Maximum number of arms in the graph.
 const MOST_CURVES: usize = 8;
-/// Maximum number of arms named in a warning.
 const MAX_NAMES: usize = 6;
 
 /// Returns the final figures of each arm. `results` has all runs in order.

@@ -1,4 +1,4 @@
-//! Large studies: split by an existing scheduler, killed, repeated, put together; a full disk, a stop, wrong places.
+//! Large studies: split by a job scheduler, killed, repeated and merged; a full disk, an interruption, invalid paths.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ days = 28
 "#;
 
 const SHARDS: usize = 4;
-/// The shard that is killed.
+/// The shard that the test kills.
 const KILLED: usize = 3;
 
 fn study(home: &Home, text: &str) -> String {
@@ -28,13 +28,13 @@ fn study(home: &Home, text: &str) -> String {
     path.to_string_lossy().into_owned()
 }
 
-/// The files in which runs are kept.
+/// Returns the files with stored runs.
 fn kept(home: &Home) -> Vec<PathBuf> {
     let entries = fs::read_dir(home.runs().join(".lab/studies")).into_iter().flatten().flatten();
     entries.map(|entry| entry.path()).collect()
 }
 
-/// Runs that are kept of a shard, or of the study that is not split.
+/// Counts the stored runs of a shard or of the unsplit study.
 fn kept_runs(home: &Home, ending: &str) -> usize {
     let own = kept(home).into_iter().find(|path| path.to_string_lossy().ends_with(ending));
     let bytes = own.and_then(|path| fs::read(path).ok()).unwrap_or_default();
@@ -46,16 +46,16 @@ fn signal(name: &str, process: &str) {
     assert!(sent.success(), "{name} {process}");
 }
 
-/// Waits until something is so.
+/// Waits until a condition is true.
 fn wait_for(what: &str, mut is_so: impl FnMut() -> bool) {
     let begun = Instant::now();
     while !is_so() {
-        assert!(begun.elapsed() < Duration::from_secs(300), "{what} does not come");
+        assert!(begun.elapsed() < Duration::from_secs(300), "timed out waiting for {what}");
         std::thread::sleep(Duration::from_millis(2));
     }
 }
 
-/// How shards are started: by GNU parallel where it is installed, else by the test itself.
+/// Starts shards with GNU parallel if it is installed, otherwise directly.
 struct Scheduler<'a> {
     home: &'a Home,
     file: &'a str,
@@ -74,7 +74,7 @@ impl Scheduler<'_> {
         Scheduler { home, file, out, has_parallel }
     }
 
-    /// The shell's command of a shard; its process leaves its number.
+    /// Returns the shell command of a shard, which writes its process ID to a file.
     fn shard(&self, shard: &str) -> String {
         let folder = self.home.0.path().display();
         format!(
@@ -85,7 +85,7 @@ impl Scheduler<'_> {
         )
     }
 
-    /// Starts all shards, or those that failed before.
+    /// Starts all shards, or those that failed.
     fn start(&self, only_failed: bool) -> Vec<Child> {
         let quiet = |command: &mut Command| {
             command
@@ -111,7 +111,7 @@ impl Scheduler<'_> {
         vec![quiet(&mut command)]
     }
 
-    /// Whether all of them did what they were to do, once all have ended.
+    /// Waits for all shards and returns whether all succeeded.
     fn wait(children: Vec<Child>) -> bool {
         let ended = children.into_iter().map(|mut child| child.wait().expect("it ends").success());
         ended.collect::<Vec<bool>>().into_iter().all(|own| own)
@@ -154,7 +154,7 @@ fn shards_of_which_one_was_killed_and_repeated_are_the_study_that_was_not_split(
     assert_eq!(fs::read(&into).expect("rows"), whole.out.as_bytes());
 }
 
-/// Whether the kill cut a line off: it stays, and its run was played again.
+/// Returns whether the kill truncated a line. Such a line stays, and its run is played again.
 fn has_half_a_line(home: &Home, ending: &str) -> bool {
     let own = kept(home).into_iter().find(|path| path.to_string_lossy().ends_with(ending)).expect("a file");
     let text = fs::read_to_string(own).expect("lines");
@@ -194,7 +194,7 @@ fn a_full_disk_loses_nothing_that_was_kept() {
     let into = home.0.path().join("few.csv").to_string_lossy().into_owned();
     let whole = alone.run(&["lab", "study", &file]).out;
     let program = env!("CARGO_BIN_EXE_novamind");
-    // Blocks of 512 bytes: room for some of the runs, and then for all of them but not for the rows.
+    // In blocks of 512 bytes: enough for some of the runs, then for all runs but not for the rows.
     let limited = |blocks: usize, more: &str| {
         let script = format!(
             "trap '' XFSZ; ulimit -f {blocks}; exec '{program}' lab study '{file}' --out '{into}' {more}"

@@ -5,7 +5,7 @@ use std::fs;
 
 use crate::support::home::{Home, Said, id};
 
-/// Rows of comma-separated values by the names of their columns.
+/// Parses CSV rows by column name.
 fn rows(said: &Said) -> Vec<BTreeMap<String, String>> {
     assert_eq!(said.code, 0, "{}", said.err);
     let mut reader = csv::Reader::from_reader(said.out.as_bytes());
@@ -21,7 +21,7 @@ fn the_results_table_holds_comparable_runs_and_says_why_others_are_not_there() {
     let home = Home::new();
     let saved = home.run(&["run", "--policy", "P0", "--seed", "7", "--surges", "on", "--save"]);
     assert_eq!(saved.code, 0, "{}", saved.err);
-    // A changed parameter, and another length.
+    // A changed parameter, and a different length.
     for options in [&["--surges", "off", "--days", "500"][..], &["--surges", "on", "--days", "28"]] {
         let said = home.run(&[&["run", "--policy", "P0", "--save"], options].concat());
         assert_eq!(said.code, 0, "{}", said.err);
@@ -131,7 +131,7 @@ fn many_runs_are_compared_in_rows_that_fit() {
     }
 }
 
-/// Commands of a section of the page with what they say: the first two cells of the rows of its table, by command.
+/// Returns the commands of a section and their expected output: the first two cells of its table rows, by command.
 fn claims_of(section: &str) -> BTreeMap<&'static str, Vec<&'static str>> {
     let page = include_str!("../../docs/experiments.md");
     let (_, from) = page.split_once(&format!("\n## {section}\n")).expect(section);
@@ -153,7 +153,7 @@ fn commands_say_what_is_claimed(section: &str) {
         let said = home.run(&command.split(' ').collect::<Vec<_>>());
         assert_eq!(said.code, 0, "{command}: {}", said.err);
         for says in claims {
-            assert!(said.out.contains(says), "{command} does not say {says}: {}", said.out);
+            assert!(said.out.contains(says), "{command} does not print {says}: {}", said.out);
         }
     }
 }

@@ -15,7 +15,7 @@ pub fn leaders(points: &[GridPoint]) -> Vec<usize> {
     (0..points.len()).map(leader).collect()
 }
 
-/// Returns the cash floor of the routine, if there is one.
+/// Returns the cash floor of the routine, or negative infinity without a routine.
 fn floor_of(policy: &Policy) -> f64 {
     policy.rule_based.as_ref().map_or(f64::NEG_INFINITY, |rules| rules.cash_floor)
 }

@@ -1,4 +1,4 @@
-//! How a policy answers companies: the section `[enterprise]` (docs/interfaces/policies.md#answers-to-companies).
+//! Answers of a policy to enterprises: the section `[enterprise]` (docs/interfaces/policies.md#answers-to-companies).
 
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -12,19 +12,19 @@ use novamind_world::identifiers::Plan;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EnterpriseRule {
-    /// What is offered, one to three, in this order.
+    /// Offers in order, one to three.
     pub offerings: Vec<OfferingRule>,
-    /// How prices change with the turns of the policy in a thread.
+    /// Price factors by the number of the policy's turns in a thread.
     #[serde(default)]
     pub factor: PriceFactor,
-    /// Turns after which a thread is rejected; none: never.
+    /// Turns after which a thread is rejected; `None`: never.
     pub give_up_after: Option<u32>,
-    /// Kinds of threads that are answered.
+    /// Thread types that are answered.
     #[serde(default)]
     pub types: ThreadTypes,
 }
 
-/// A plan at its price before the factor.
+/// A plan and its price before the factor.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OfferingRule {
@@ -34,15 +34,15 @@ pub struct OfferingRule {
     pub price: f64,
 }
 
-/// Factor on prices: max(floor, start + step times own turns).
+/// Price factor: max(floor, start + step times own turns).
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PriceFactor {
     /// Factor of the first offer.
     pub start: f64,
-    /// Added with every further one.
+    /// Change with every further offer.
     pub step: f64,
-    /// Least factor.
+    /// Minimum factor.
     pub floor: f64,
 }
 
@@ -53,23 +53,23 @@ impl Default for PriceFactor {
 }
 
 impl PriceFactor {
-    /// The factor after this many own turns.
+    /// Returns the factor after this many own turns.
     pub fn after(&self, own_turns: u32) -> f64 {
         (self.start + self.step * f64::from(own_turns)).max(self.floor)
     }
 }
 
-/// Kinds of threads: `"all"`, or a list of them.
+/// Thread types: `"all"` or a list.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(untagged, expecting = "types must be \"all\" or a list of thread types")]
 pub enum ThreadTypes {
-    /// All kinds.
+    /// All types.
     #[default]
     #[serde(skip)]
     All,
-    /// The word for all kinds, or another that is wrong.
+    /// The word `all`, or an invalid word.
     Word(String),
-    /// These kinds.
+    /// The listed types.
     List(Vec<String>),
 }
 
@@ -83,17 +83,17 @@ impl ThreadTypes {
 }
 
 impl EnterpriseRule {
-    /// The rule, if it can be followed.
+    /// Returns the rule if it is valid.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// Describes the problem.
     pub(super) fn checked(self) -> Result<EnterpriseRule, String> {
         if !(1..=3).contains(&self.offerings.len()) {
-            return Err(format!("offerings must be 1 to 3, not {}", self.offerings.len()));
+            return Err(format!("the number of offerings must be 1 to 3, not {}", self.offerings.len()));
         }
         let bad = |price: &f64| !price.is_finite() || *price < 0.0;
         if let Some(price) = self.offerings.iter().map(|offering| offering.price).find(bad) {
-            return Err(format!("the price {price} of an offering is no price of at least 0"));
+            return Err(format!("the price of an offering must be at least 0, not {price}"));
         }
         let wrong = |word: &&String| ThreadKind::parse(word).is_none();
         let known = ThreadKind::ALL.map(ThreadKind::id).join(", ");
@@ -108,7 +108,7 @@ impl EnterpriseRule {
         }
     }
 
-    /// The calls that answer these threads: all offers, then all rejections; none where there is nothing to say.
+    /// Returns the calls that answer these threads: one with all offers, one with all rejections. Empty calls are omitted.
     pub fn calls(&self, waiting: &[WaitingThread]) -> Vec<(ToolId, Value)> {
         let mut threads: Vec<&WaitingThread> =
             waiting.iter().filter(|thread| self.types.hold(thread.kind)).collect();

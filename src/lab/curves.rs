@@ -1,4 +1,4 @@
-//! Participation curves as figures: how much quality customers require at a price (docs/laboratory/laws-and-curves.md).
+//! Participation curves: required quality by price (docs/laboratory/laws-and-curves.md).
 
 use super::exhibit::{
     AxisScale, Column, Datum, Exhibit, Graph, GraphAxis, GraphForm, Measure, Series, Tabulation,
@@ -8,12 +8,12 @@ use novamind_world::customers::curve::{Curve, required_quality};
 use novamind_world::identifiers::Group;
 use novamind_world::params::{GroupParams, Params};
 
-/// Steps from a price of 0 to the budget.
+/// Number of price steps from 0 to the budget.
 const STEPS: u32 = 100;
-/// Every so many prices of the sample are a row.
+/// Sampled prices per table row.
 const ROW_EVERY: usize = 5;
 
-/// The customer with the mean traits of a group.
+/// Returns a customer with the mean traits of a group.
 fn mean_customer(own: &GroupParams, params: &Params) -> Curve {
     let bounds = &params.customer_generation;
     Curve {
@@ -25,7 +25,7 @@ fn mean_customer(own: &GroupParams, params: &Params) -> Curve {
     }
 }
 
-/// The mean customers of groups: quality required by price as a share of the budget.
+/// Returns the curves of the groups' mean customers, with prices as shares of the budget.
 pub fn all_curves(params: &Params) -> Exhibit {
     let columns = vec![
         Column::words("group", "group"),
@@ -39,7 +39,7 @@ pub fn all_curves(params: &Params) -> Exhibit {
     ];
     let mut table = Tabulation::new(
         "curves",
-        "Quality that the mean customer of each group requires at shares of its budget",
+        "Required quality of each group's mean customer at shares of its budget",
         columns,
     );
     for group in Group::all() {
@@ -61,12 +61,12 @@ pub fn all_curves(params: &Params) -> Exhibit {
     let shown = |is_enterprise: bool| {
         Group::all().filter(move |own| own.initially_known() && own.is_enterprise() == is_enterprise)
     };
-    for (of, is_enterprise) in [("individuals", false), ("companies", true)] {
+    for (of, is_enterprise) in [("individuals", false), ("enterprises", true)] {
         exhibit.graphs.push(mean_graph(of, shown(is_enterprise), params));
     }
     exhibit
-        .with_note("The curve jumps at half the budget, and above the budget no quality wins. A customer takes a plan whose quality lies on its curve or above it.")
-        .with_note("`lab curves GROUP` shows how customers of a group differ.")
+        .with_note("The curve jumps at half the budget. Above the budget no quality is enough. Customers accept a plan whose quality is on or above their curve.")
+        .with_note("`lab curves GROUP` shows differences within a group.")
 }
 
 fn mean_graph(of: &str, groups: impl Iterator<Item = Group>, params: &Params) -> Graph {
@@ -77,8 +77,8 @@ fn mean_graph(of: &str, groups: impl Iterator<Item = Group>, params: &Params) ->
         Series { name: group.id().to_owned(), points: (0..=STEPS).map(point).collect() }
     });
     Graph {
-        title: format!("Mean customers of the groups of {of} that are known from the start"),
-        summary: "Required quality rises with the price in two halves".to_owned(),
+        title: format!("Mean customers of {of} in the groups known on day 0"),
+        summary: "Required quality rises with price, with a jump at half the budget".to_owned(),
         across: GraphAxis { label: "price / budget", scale: AxisScale::Linear },
         up: GraphAxis { label: "required quality", scale: AxisScale::Linear },
         series: series.collect(),
@@ -86,7 +86,7 @@ fn mean_graph(of: &str, groups: impl Iterator<Item = Group>, params: &Params) ->
     }
 }
 
-/// A group: its mean customer, and what a tenth, a half and nine tenths of its customers require at most.
+/// Returns the curve of a group's mean customer and the quality that satisfies 10 %, 50 % and 90 % of its customers.
 pub fn curve_of(group: Group, params: &Params) -> Exhibit {
     let own = params.group(group);
     let curve = mean_customer(own, params);
@@ -98,7 +98,7 @@ pub fn curve_of(group: Group, params: &Params) -> Exhibit {
         Column::numbers("median", "half", Measure::Number(3)),
         Column::numbers("ninetieth", "9 in 10", Measure::Number(3)),
     ];
-    let caption = "Quality that the mean customer requires, and that shares of the customers require at most";
+    let caption = "Quality required by the mean customer, and quality that satisfies shares of customers";
     let mut table = Tabulation::new("curve", caption, columns);
     for point in sample.iter().step_by(ROW_EVERY) {
         let of_mean = (point.price <= curve.c_max).then(|| required_quality(point.price, &curve, params));
@@ -119,7 +119,7 @@ pub fn curve_of(group: Group, params: &Params) -> Exhibit {
     let mean = fine.map(|price| (price, required_quality(price, &curve, params))).collect();
     exhibit.graphs.push(Graph {
         title: format!("{}: quality required by price", group.id()),
-        summary: "The mean customer, and the quality that shares of the customers require at most".to_owned(),
+        summary: "Mean customer, and quality that satisfies shares of customers".to_owned(),
         across: GraphAxis { label: "dollars a month", scale: AxisScale::Linear },
         up: GraphAxis { label: "required quality", scale: AxisScale::Linear },
         series: vec![
@@ -130,7 +130,7 @@ pub fn curve_of(group: Group, params: &Params) -> Exhibit {
         ],
         form: GraphForm::Lines,
     });
-    exhibit.with_note("– the price is above the budget of so many that no quality wins them.")
+    exhibit.with_note("– the price is above the budget of too many customers.")
 }
 
 #[cfg(test)]

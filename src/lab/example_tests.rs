@@ -1,5 +1,5 @@
-//! No answer stands in what people read before they play: tour, README, documents, pictures and examples show none of the
-//! numbers by which a shipped policy plays.
+//! Tests that texts for new players do not reveal good settings: tour, README, documents, pictures and examples do not contain
+//! the numbers of a bundled policy.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,13 +11,13 @@ use novamind_tools::CATALOGUE;
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 
-/// The page that says what the policies are.
+/// The page that documents the policies; it is exempt.
 const OF_POLICIES: &str = "docs/interfaces/policies.md";
 
-/// Most letters between two numbers that belong together.
+/// Maximum characters between two numbers of one list.
 const APART: usize = 24;
 
-/// What shipped policies set.
+/// Settings of the bundled policies.
 struct Answers {
     /// Prices or quotas of the plans A, B and C.
     sets: Vec<[f64; 3]>,
@@ -58,11 +58,11 @@ struct Written {
     from: usize,
     to: usize,
     value: f64,
-    /// The plan that is named before it.
+    /// The plan named before it.
     plan: Option<char>,
 }
 
-/// The numbers of a text, written as people and programs do: `12`, `$12.00`, `60k`, `250_000`, `1.2M`.
+/// Returns the numbers in a text, in any of these formats: `12`, `$12.00`, `60k`, `250_000`, `1.2M`.
 fn numbers(text: &str) -> Vec<Written> {
     let bytes = text.as_bytes();
     let mut found = Vec::new();
@@ -100,7 +100,7 @@ fn numbers(text: &str) -> Vec<Written> {
     found
 }
 
-/// Answers that a text gives away.
+/// Returns the settings that a text reveals.
 fn given_away(text: &str, answers: &Answers) -> Vec<String> {
     let numbers = numbers(text);
     let near = |pair: &[Written]| pair[1].from.saturating_sub(pair[0].to) <= APART;
@@ -151,7 +151,7 @@ fn given_away(text: &str, answers: &Answers) -> Vec<String> {
     found
 }
 
-/// Files of a folder and below it.
+/// Returns the files in a folder, recursively.
 fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
@@ -159,7 +159,7 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// What of a file people read: of a source what is before its tests, of a picture its words in rows.
+/// Returns the readable text of a file: sources without tests, pictures as rows of text.
 fn read(path: &Path) -> Option<String> {
     let text = fs::read_to_string(path).ok()?;
     let name = path.file_name()?.to_str()?;
@@ -172,7 +172,7 @@ fn read(path: &Path) -> Option<String> {
     }
 }
 
-/// The words of a picture that the console has drawn, without its tags: a row of letters is a line.
+/// Returns the text of a console picture without tags, one line per row.
 fn words_of(svg: &str) -> String {
     let (mut text, mut row) = (String::new(), "");
     for piece in svg.split("<text").skip(1) {

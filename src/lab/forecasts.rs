@@ -1,5 +1,5 @@
-//! Back-test of naive forecasts: policies are played, and what a naive forecast before each week would have said is compared
-//! with what came.
+//! Back-test of naive forecasts: plays policies and compares the naive forecast before each week
+//! with the outcome.
 
 use super::policy::Policy;
 use super::runner::{RunError, RunSpec, weeks_of};
@@ -8,24 +8,24 @@ use novamind_record::folder::configuration::Configuration;
 use novamind_session::{Bands, Coverage, Hindcast, Stage, hindcasts};
 use novamind_world::params::Params;
 
-/// Days ahead that forecasts are asked for.
+/// Forecast horizons in days.
 pub fn horizons() -> Vec<u32> {
     Params::shipped().limits.prediction_horizons_days
 }
 
-/// The weeks of one run of a policy.
+/// Weeks of one run of a policy.
 #[derive(Debug, Clone)]
 pub struct PlayedWeeks {
     /// Policy.
     pub policy: String,
-    /// Its weeks.
+    /// Weeks.
     pub weeks: Vec<WeekFigures>,
 }
 
-/// Plays a policy with a seed.
+/// Plays a policy on a seed and returns its weeks.
 ///
 /// # Errors
-/// The run cannot begin, or a tool refuses a call that may not fail.
+/// Fails if the run cannot start or a tool rejects a call that must succeed.
 pub fn play_weeks(
     policy: &Policy,
     seed: u64,
@@ -35,9 +35,9 @@ pub fn play_weeks(
     Ok(PlayedWeeks { policy: policy.name.clone(), weeks })
 }
 
-/// The bands that held in some runs, with how often they hold there.
+/// Returns the intervals fitted to some runs, with their coverage there.
 pub fn measure(runs: &[PlayedWeeks], horizons: &[u32], seeds: u64) -> Bands {
-    // Errors do not depend on the bands they are compared with.
+    // Errors do not depend on the intervals.
     let all = horizons.iter().flat_map(|horizon| runs.iter().map(move |run| (*horizon, run)));
     let errors: Vec<(Stage, u32, f64)> = all
         .flat_map(|(horizon, run)| {
@@ -51,17 +51,17 @@ pub fn measure(runs: &[PlayedWeeks], horizons: &[u32], seeds: u64) -> Bands {
     Bands { coverage, ..bands }
 }
 
-/// How often bands hold a horizon ahead, in all runs or in those of a policy.
+/// Returns the coverage at a horizon, over all runs or those of one policy.
 pub fn coverage(runs: &[PlayedWeeks], policy: Option<&str>, horizon: u32, bands: &Bands) -> Coverage {
     let own = runs.iter().filter(|run| policy.is_none_or(|policy| run.policy == policy));
     let made: Vec<Hindcast> = own.flat_map(|run| hindcasts(&run.weeks, horizon, bands)).collect();
     let held = made.iter().filter(|own| own.held).count();
-    // To the digit that is shown, so that the file reads well.
+    // Rounded to the displayed digits to keep the file readable.
     let share = if made.is_empty() { 0.0 } else { held as f64 / made.len() as f64 };
     Coverage { horizon, forecasts: made.len(), held: (share * 1e4).round() / 1e4 }
 }
 
-/// Names of the policies, in their order.
+/// Returns the names of the policies in order.
 pub fn policies_of(runs: &[PlayedWeeks]) -> Vec<&str> {
     let mut names: Vec<&str> = runs.iter().map(|run| run.policy.as_str()).collect();
     names.dedup();
@@ -73,7 +73,7 @@ mod tests {
     use super::*;
     use novamind_session::JournalEntry;
 
-    /// What the game offers before a week is what the back-test takes for it afterwards.
+    /// The forecast offered during play equals the back-test's forecast.
     #[test]
     fn what_is_measured_is_what_is_offered() {
         let configuration = Configuration::shipped();
@@ -101,7 +101,7 @@ mod tests {
                 let forecast = forecasts.iter().find(|one| one.horizon_days == horizon).expect("filed");
                 let outcome = session.cash_by_day()[(day + horizon) as usize];
                 let inside = (forecast.lower..=forecast.upper).contains(&outcome);
-                assert_eq!(inside, own.held, "day {day}, {horizon} ahead: {outcome} beside {forecast:?}");
+                assert_eq!(inside, own.held, "day {day}, {horizon} ahead: {outcome}, {forecast:?}");
                 compared += 1;
             }
         }

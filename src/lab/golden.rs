@@ -15,13 +15,13 @@ type Cell = (String, String, u32);
 pub struct Reference {
     /// Name of the policy.
     pub policy: String,
-    /// Mean, spread and number of seeds by cell.
+    /// Mean, standard deviation and number of seeds by cell.
     pub cells: BTreeMap<Cell, Sample>,
-    /// Single values, where the reference has them: for figures that are compared as logarithms.
+    /// Single values, if the reference has them, for figures that are compared as logarithms.
     per_seed: BTreeMap<Cell, Vec<f64>>,
 }
 
-/// Why reference figures cannot be read.
+/// Reason why reference figures cannot be read.
 #[derive(Debug)]
 pub struct GoldenError {
     path: PathBuf,
@@ -36,7 +36,7 @@ impl fmt::Display for GoldenError {
 
 impl std::error::Error for GoldenError {}
 
-/// Figures that grow by compounding and are compared as ln(1 + x).
+/// Figures with compound growth, compared as ln(1 + x).
 const COMPOUNDING: [&str; 17] = [
     "subs",
     "subs_total",
@@ -57,10 +57,10 @@ const COMPOUNDING: [&str; 17] = [
     "lost_leads_cum",
 ];
 
-/// Shown and kept out of the verdict: the mood of churned authors differs by design.
+/// Shown but excluded from the verdict: the mood of churned authors differs by design.
 const SHOWN_ONLY: [&str; 1] = ["posts_customer_cum"];
 
-/// Cells of fewer seeds say too little.
+/// Minimum number of seeds of a cell.
 const FEWEST_SEEDS: usize = 5;
 
 impl Reference {
@@ -76,10 +76,10 @@ impl Reference {
     }
 }
 
-/// Reads `<policy>.csv` of a reference folder, and `per_seed/<policy>.csv` if it is there.
+/// Reads `<policy>.csv` from a reference folder, and `per_seed/<policy>.csv` if it exists.
 ///
 /// # Errors
-/// The file is missing or no table of figures.
+/// Fails if the file is missing or is not a table of figures.
 pub fn read_reference(folder: &Path, policy: &str) -> Result<Reference, GoldenError> {
     let path = folder.join(format!("{policy}.csv"));
     let mut reference = Reference { policy: policy.to_owned(), ..Reference::default() };
@@ -90,7 +90,7 @@ pub fn read_reference(folder: &Path, policy: &str) -> Result<Reference, GoldenEr
         let (Some(day), Some(count), Some(mean), Some(std)) = parsed else {
             return Err(GoldenError {
                 path,
-                problem: format!("{figure} {group} {day} is no row of figures"),
+                problem: format!("{figure} {group} {day} is not a row of figures"),
             });
         };
         reference.cells.insert((figure, group, day), Sample { count, mean, std });
@@ -117,7 +117,7 @@ fn read_table<const WIDTH: usize>(
     let mut places = [0; WIDTH];
     for (place, column) in places.iter_mut().zip(columns) {
         let found = headers.iter().position(|header| header == *column);
-        *place = found.ok_or_else(|| wrong(format!("there is no column {column}")))?;
+        *place = found.ok_or_else(|| wrong(format!("column {column} is missing")))?;
     }
     let rows = reader.records().map(|record| {
         let record = record.map_err(|error| wrong(error.to_string()))?;
@@ -135,9 +135,9 @@ pub struct ComparedCell {
     pub group: String,
     /// Checkpoint day.
     pub day: u32,
-    /// The reference.
+    /// Mean of the reference.
     pub reference: Sample,
-    /// Ours.
+    /// Mean of our runs.
     pub own: Sample,
     /// Difference of the means in standard errors.
     pub z: f64,
@@ -148,15 +148,15 @@ pub struct ComparedCell {
 pub struct GoldenComparison {
     /// Policy.
     pub policy: String,
-    /// Cells that count.
+    /// Cells that count for the verdict.
     pub cells: Vec<ComparedCell>,
-    /// Cells that are only shown.
+    /// Cells that are shown only.
     pub shown: Vec<ComparedCell>,
-    /// Figures of the reference that ours lacks.
+    /// Reference figures that are missing in our runs.
     pub missing: Vec<String>,
 }
 
-/// Compares our runs, one list of figures per seed, with a reference.
+/// Compares our runs (a list of figures per seed) with a reference.
 pub fn compare(reference: &Reference, runs: &[Vec<Figure>]) -> GoldenComparison {
     let mut own: BTreeMap<(&str, &str, u32), Vec<f64>> = BTreeMap::new();
     for figure in runs.iter().flatten() {
@@ -202,7 +202,7 @@ fn logged(values: &[f64]) -> Vec<f64> {
     values.iter().map(|value| libm::log1p(value.max(0.0))).collect()
 }
 
-/// Difference of two means in standard errors: 0 where they agree to a millionth, 99 where neither varies.
+/// Returns the difference of two means in standard errors: 0 if they agree to a millionth, 99 if neither varies.
 fn z_score(reference: &Sample, own: &Sample) -> f64 {
     let difference = own.mean - reference.mean;
     if difference.abs() < 1e-9 + 1e-6 * reference.mean.abs() {
@@ -214,13 +214,13 @@ fn z_score(reference: &Sample, own: &Sample) -> f64 {
 }
 
 impl GoldenComparison {
-    /// Share of cells with |z| below a bound.
+    /// Returns the share of cells with |z| below a bound.
     pub fn share_below(&self, bound: f64) -> f64 {
         let below = self.cells.iter().filter(|cell| cell.z.abs() < bound).count();
         below as f64 / self.cells.len().max(1) as f64
     }
 
-    /// Figures with at least five cells whose |median of z| is above 3.5, with that median.
+    /// Returns the figures with at least five cells and |median z| above 3.5, with that median.
     pub fn suspects(&self) -> Vec<(String, f64)> {
         let mut by_figure: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
         self.cells.iter().for_each(|cell| by_figure.entry(&cell.figure).or_default().push(cell.z));
@@ -232,7 +232,7 @@ impl GoldenComparison {
             .collect()
     }
 
-    /// A line per figure: its cells, their median, and the one that differs most.
+    /// Returns a line per figure: number of cells, median z, and the worst cell.
     pub fn by_figure(&self) -> Vec<String> {
         let mut by_figure: BTreeMap<&str, Vec<&ComparedCell>> = BTreeMap::new();
         self.cells.iter().for_each(|cell| by_figure.entry(&cell.figure).or_default().push(cell));
@@ -252,7 +252,7 @@ impl GoldenComparison {
         by_figure.into_iter().filter_map(line).collect()
     }
 
-    /// The cells that differ most.
+    /// Returns the cells that differ most.
     pub fn worst(&self, count: usize) -> Vec<&ComparedCell> {
         let mut cells: Vec<&ComparedCell> = self.cells.iter().collect();
         cells.sort_by(|left, right| right.z.abs().total_cmp(&left.z.abs()));
@@ -262,7 +262,6 @@ impl GoldenComparison {
 }
 
 impl ComparedCell {
-    /// Standard error of the reference's mean.
     fn standard_error(&self) -> f64 {
         self.reference.std / (self.reference.count.max(1) as f64).sqrt()
     }
@@ -327,7 +326,7 @@ mod tests {
 
     #[test]
     fn figures_that_compound_are_compared_as_logarithms_and_no_others() {
-        // ln(1 + x) is 1 to 5 there and 2 to 6 here: one apart, each mean with a variance of 2.5 / 5.
+        // ln(1 + x) is 1 to 5 in the reference and 2 to 6 in ours: the difference is 1, and each mean has variance 2.5 / 5.
         let singles = |first: i32| (first..first + 5).map(|power| libm::expm1(f64::from(power)));
         let mut reference = Reference { policy: "x".to_owned(), ..Reference::default() };
         for figure in ["subs_total", "cash"] {

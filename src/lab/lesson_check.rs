@@ -1,5 +1,5 @@
-//! Whether a lesson does what it promises, on six seeds: the good play reaches every goal, the bad one misses one and meets
-//! its pitfall, and the figures that its texts name hold.
+//! Checks a lesson on six seeds: the reference play reaches every goal, the bad play misses a goal and triggers
+//! its pitfall, and the figures in its texts are correct.
 
 use std::sync::Arc;
 
@@ -10,77 +10,78 @@ use novamind_record::error::RunError;
 use novamind_rules::answers_to_companies;
 use novamind_session::{PartPlay, Session, play_part, play_part_watched};
 
-/// How far a measured figure may be from the one that a lesson states, as a share of it.
+/// Allowed relative deviation of a measured figure from the stated one.
 pub const TOLERANCE: f64 = 0.15;
 
-/// What a reference play came to on a seed.
+/// The result of a play on a seed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlayResult {
     /// Seed.
     pub seed: u64,
-    /// Each goal of each part, in order: its text, what was measured, what was to be reached, whether it was.
+    /// Results of the goals of each part, in order.
     pub goals: Vec<GoalResult>,
-    /// Names of the pitfalls that were met.
+    /// Names of the triggered pitfalls.
     pub pitfalls: Vec<String>,
 }
 
-/// What a goal came to.
+/// The result of a goal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GoalResult {
-    /// Its text.
+    /// Text of the goal.
     pub text: String,
-    /// What was measured; none where there is none.
+    /// Measured value, if any.
     pub value: Option<f64>,
-    /// What was to be reached.
+    /// Target value.
     pub bound: Option<f64>,
-    /// Whether it was reached.
+    /// Whether the goal was reached.
     pub met: bool,
 }
 
-/// A figure that texts name, measured again.
+/// A figure in the texts, measured again.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FigureResult {
-    /// The figure as the lesson states it.
+    /// The stated figure.
     pub stated: MeasuredFigure,
-    /// Its mean over the seeds; not a number where it has none.
+    /// Mean over the seeds; NaN if there is none.
     pub mean: f64,
 }
 
 impl FigureResult {
-    /// Whether the stated value holds.
+    /// Whether the stated value is correct.
     pub fn holds(&self) -> bool {
         (self.mean - self.stated.value).abs() <= TOLERANCE * self.stated.value.abs()
     }
 }
 
-/// What the check of a lesson found.
+/// The results of a lesson check.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LessonCheck {
-    /// The good play on each seed.
+    /// Results of the reference play by seed.
     pub good: Vec<PlayResult>,
-    /// The bad play on each seed.
+    /// Results of the bad play by seed.
     pub bad: Vec<PlayResult>,
-    /// The figures that texts name.
+    /// Figures in the texts.
     pub figures: Vec<FigureResult>,
-    /// The pitfall that the bad play is to meet.
+    /// Pitfall that the bad play must trigger.
     pub pitfall: String,
 }
 
 impl LessonCheck {
-    /// What does not hold, a line each.
+    /// Returns the failed checks, one line each.
     pub fn problems(&self) -> Vec<String> {
         let missed = self.good.iter().flat_map(|play| {
             let missed = play.goals.iter().filter(|goal| !goal.met);
-            missed.map(|goal| format!("seed {}: the good play misses {}", play.seed, goal.text))
+            missed.map(|goal| format!("seed {}: the reference play misses {}", play.seed, goal.text))
         });
         let reached = self.bad.iter().filter(|play| play.goals.iter().all(|goal| goal.met));
         let reached = reached.map(|play| format!("seed {}: the bad play reaches every goal", play.seed));
         let unmet = self.bad.iter().filter(|play| !play.pitfalls.contains(&self.pitfall));
-        let unmet = unmet
-            .map(|play| format!("seed {}: the bad play does not meet pitfall {}", play.seed, self.pitfall));
+        let unmet = unmet.map(|play| {
+            format!("seed {}: the bad play does not trigger pitfall {}", play.seed, self.pitfall)
+        });
         let wrong = self.figures.iter().filter(|figure| !figure.holds()).map(|figure| {
             let FigureResult { stated, mean } = figure;
-            format!("{} is stated as {} and is {}", stated.name, stated.written(), stated.write(*mean))
+            format!("{} is stated as {} but is {}", stated.name, stated.written(), stated.write(*mean))
         });
         missed.chain(reached).chain(unmet).chain(wrong).collect()
     }
@@ -89,7 +90,7 @@ impl LessonCheck {
 /// Checks a lesson.
 ///
 /// # Errors
-/// A part cannot begin, or a play is refused.
+/// Fails if a part cannot start or a play is rejected.
 pub fn check_lesson(lesson: &Arc<Lesson>) -> Result<LessonCheck, RunError> {
     Ok(LessonCheck {
         figures: measured(lesson)?,
@@ -97,10 +98,10 @@ pub fn check_lesson(lesson: &Arc<Lesson>) -> Result<LessonCheck, RunError> {
     })
 }
 
-/// Checks the reference plays of a lesson on some seeds, and no measured figure.
+/// Checks the plays of a lesson on some seeds without measured figures.
 ///
 /// # Errors
-/// The same.
+/// As for [`check_lesson`].
 pub fn check_plays(lesson: &Arc<Lesson>, seeds: &[u64]) -> Result<LessonCheck, RunError> {
     let plays = |play: &ReferencePlay| -> Result<Vec<PlayResult>, RunError> {
         seeds.par_iter().map(|seed| played(lesson, play, *seed)).collect()
@@ -113,7 +114,6 @@ pub fn check_plays(lesson: &Arc<Lesson>, seeds: &[u64]) -> Result<LessonCheck, R
     })
 }
 
-/// All parts of a lesson as a reference play has them, on a seed.
 fn played(lesson: &Arc<Lesson>, play: &ReferencePlay, seed: u64) -> Result<PlayResult, RunError> {
     let mut result = PlayResult { seed, goals: Vec::new(), pitfalls: Vec::new() };
     for (part, own) in lesson.plan.parts.iter().enumerate() {
@@ -145,7 +145,7 @@ fn played(lesson: &Arc<Lesson>, play: &ReferencePlay, seed: u64) -> Result<PlayR
     Ok(result)
 }
 
-/// The measured figures of a lesson; those of one play are measured in the same runs.
+/// Measures the figures of a lesson; figures of one play are measured in the same runs.
 fn measured(lesson: &Arc<Lesson>) -> Result<Vec<FigureResult>, RunError> {
     let mut plays: Vec<Vec<&MeasuredFigure>> = Vec::new();
     for figure in &lesson.plan.measured {
@@ -178,7 +178,7 @@ fn measured(lesson: &Arc<Lesson>) -> Result<Vec<FigureResult>, RunError> {
     Ok(lesson.plan.measured.iter().map(|own| FigureResult { stated: own.clone(), mean: mean(own) }).collect())
 }
 
-/// Figures that are measured in one play, on a seed.
+/// Measures the figures of one play on a seed.
 fn values_of(
     lesson: &Arc<Lesson>,
     figures: &[&MeasuredFigure],
@@ -198,7 +198,7 @@ fn values_of(
     };
     let mut values = vec![None; figures.len()];
     let mut measure = |session: &mut Session, week: u32| {
-        // A company that is bankrupt stays as it is.
+        // A bankrupt company does not change.
         let stays = session.ended().is_some();
         for (value, own) in values.iter_mut().zip(figures) {
             let wanted = own.week.unwrap_or(last);

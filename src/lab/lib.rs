@@ -1,6 +1,6 @@
-//! Runs without a person: policies, figures over many seeds, comparison with reference figures.
+//! The laboratory: policies, experiments over many seeds, and comparison with reference figures.
 //!
-//! A policy acts on what a player can see, except for the channel choice of the paper's baseline, which reads
+//! A policy uses only what a player can see, except for the channel choice of the paper's baseline, which reads
 //! the starting yields from the parameters. Figures include hidden state, so policy runs are debug runs.
 
 pub mod ablation;

@@ -1,6 +1,6 @@
 //! The normal distribution function.
 
-/// The share of a standard normal distribution that lies below a value, 0..=1.
+/// Returns the probability that a standard normal value is below `z`, 0..=1.
 pub fn normal_share(z: f64) -> f64 {
     0.5 * libm::erfc(-z / std::f64::consts::SQRT_2)
 }

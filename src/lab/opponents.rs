@@ -1,4 +1,4 @@
-//! Policies in the world of a run that is over (docs/interfaces/policies.md#opponents).
+//! Policies played in the world of a finished run (docs/interfaces/policies.md#opponents).
 
 use std::path::Path;
 
@@ -15,8 +15,8 @@ use novamind_report::opponents::{Opponent, Opponents};
 use novamind_session::Session;
 use novamind_tools::Refusal;
 
-/// Plays the strong policies and the baseline in the world of the run in a folder, with its luck; demand surges, days and cash
-/// are those of the run. None if it was not to go on.
+/// Plays the strong policies and the baseline in the world of the run in a folder, with its seed. Demand surges, days and cash
+/// are those of the run. Returns `None` if it was stopped.
 ///
 /// # Errors
 /// As for [`SameWorld::of`].
@@ -104,6 +104,6 @@ mod tests {
             novamind_session::NewRun { storage: Storage::Runs(runs.path().to_owned()), ..Default::default() };
         let session = Session::create(new, &Configuration::shipped()).expect("a run");
         let closed = play_opponents(session.folder().expect("a folder"), &Configuration::shipped(), &|| true);
-        assert_eq!(closed.expect_err("it goes on").code, "not_in_this_mode");
+        assert_eq!(closed.expect_err("it is unfinished").code, "not_in_this_mode");
     }
 }

@@ -1,6 +1,6 @@
-//! Ranks: places by value, and how alike several rankings are.
+//! Ranks and rank correlation.
 
-/// Places by value, the greatest first, from 1; equal values share the mean of their places.
+/// Returns ranks from 1, greatest value first; equal values share their mean rank.
 pub fn places(values: &[f64]) -> Vec<f64> {
     let place = |value: &f64| {
         let better = values.iter().filter(|other| other.total_cmp(value).is_gt()).count() as f64;
@@ -10,7 +10,7 @@ pub fn places(values: &[f64]) -> Vec<f64> {
     values.iter().map(place).collect()
 }
 
-/// Spearman's rank correlation of pairs, equal values sharing their mean rank; none below three pairs, or where one side
+/// Returns Spearman's rank correlation, with mean ranks for ties. Returns `None` for fewer than three pairs or if one side
 /// does not vary.
 pub fn rank_correlation(pairs: &[(f64, f64)]) -> Option<f64> {
     if pairs.len() < 3 {
@@ -26,9 +26,9 @@ pub fn rank_correlation(pairs: &[(f64, f64)]) -> Option<f64> {
     (spread > 0.0).then(|| product(&left, &right) / spread)
 }
 
-/// Kendall's coefficient of concordance W of several rankings of the same things: 1 where all rank alike, about 1 / (number
-/// of rankings) where they have nothing in common. Shared places are allowed for. None below two rankings or two things, or where
-/// every ranking holds all things equal.
+/// Returns Kendall's coefficient of concordance W of several rankings: 1 if all are equal, about 1 / (number
+/// of rankings) if they are unrelated. Corrects for ties. Returns `None` for fewer than two rankings or two items, or if
+/// every ranking has all items tied.
 pub fn concordance(rankings: &[Vec<f64>]) -> Option<f64> {
     let (judges, things) = (rankings.len() as f64, rankings.first()?.len() as f64);
     if judges < 2.0 || things < 2.0 {
@@ -43,10 +43,10 @@ pub fn concordance(rankings: &[Vec<f64>]) -> Option<f64> {
     (spread > 0.0).then(|| above / spread)
 }
 
-/// Sum of t^3 - t over groups of t shared places.
+/// Returns the sum of t^3 - t over groups of t ties.
 fn tie_correction(places: &[f64]) -> f64 {
     let shared = |place: &f64| places.iter().filter(|other| **other == *place).count() as f64;
-    // Each of the t members adds its share.
+    // Each of the t tied items adds its share.
     places.iter().map(shared).map(|count| count * count - 1.0).sum()
 }
 
@@ -68,7 +68,7 @@ mod tests {
         let tied = vec![1.5, 1.5, 3.0];
         assert_eq!(concordance(&[tied.clone(), tied]), Some(1.0));
         assert_eq!(concordance(&[up]), None);
-        // Three judges, four things (Kendall 1948): R = 6, 5, 9, 10.
+        // Three judges, four items (Kendall 1948): R = 6, 5, 9, 10.
         let judges = [[2.0, 1.0, 3.0, 4.0], [1.0, 3.0, 2.0, 4.0], [3.0, 1.0, 4.0, 2.0]].map(Vec::from);
         let own = concordance(&judges).expect("rankings");
         let sums = [6.0, 5.0, 9.0, 10.0];

@@ -8,11 +8,11 @@ use novamind_tools::ToolId;
 use novamind_world::identifiers::{Group, Plan};
 use novamind_world::params::Params;
 
-/// Ads wait for this day.
+/// First day with ads.
 const ADS_FROM_DAY: u32 = 20;
-/// The second target group waits for this day.
+/// First day of the second target group.
 const SECOND_GROUP_FROM_DAY: u32 = 30;
-/// The calls of the routine on a decision day, in their order.
+/// Returns the calls of the routine on a decision day, in order.
 pub fn calls(rules: &RuleBased, session: &Session) -> Vec<(ToolId, Value)> {
     let seen = session.company().observe();
     let on = seen.cash > rules.cash_floor;
@@ -69,7 +69,7 @@ fn targeted(rules: &RuleBased, seen: &Observation, on: bool, params: &Params) ->
     ]
 }
 
-/// One tier towards the smallest that holds the mean usage of the week at 80 %.
+/// Returns the next capacity tier: one step towards the smallest that serves the week's mean usage at 80 % utilization.
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,4 +1,4 @@
-//! Playing a policy.
+//! Plays policies.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -20,16 +20,16 @@ use novamind_record::trajectory::record::{Ended, Via};
 use novamind_session::{DayReport, NewRun, Session, Storage};
 use novamind_tools::{Answer, Refusal, ToolId};
 
-/// What to run.
+/// Settings of a run.
 #[derive(Debug, Clone)]
 pub struct RunSpec {
-    /// Seed of all chance.
+    /// Seed of all random draws.
     pub seed: u64,
-    /// Last day of the run; enters the mechanics.
+    /// Last day of the run; it affects the mechanics.
     pub days: Option<u32>,
     /// Stop after this day.
     pub until: Option<u32>,
-    /// Demand surges; none: as policy or scenario says.
+    /// Demand surges; `None`: from the policy or scenario.
     pub surges: Option<bool>,
     /// Cash on day 0, dollars.
     pub cash: Option<f64>,
@@ -37,14 +37,14 @@ pub struct RunSpec {
     pub scenario: Option<String>,
     /// Single parameters, `(table.key, value)`.
     pub overrides: Vec<(String, String)>,
-    /// Folder to keep the run in.
+    /// Folder in which the run is saved.
     pub save: Option<PathBuf>,
-    /// Whether the database of a kept run is made too.
+    /// Whether a saved run includes its database.
     pub projection: bool,
 }
 
 impl RunSpec {
-    /// A run of a seed as the policy says.
+    /// Returns a run on a seed with the settings of the policy.
     pub fn of_seed(seed: u64) -> RunSpec {
         RunSpec {
             seed,
@@ -60,19 +60,19 @@ impl RunSpec {
     }
 }
 
-/// How a run of a policy ended.
+/// The end of a policy's run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum RunEnd {
-    /// On its last day.
+    /// On the last day.
     Horizon,
-    /// On the day it was to stop.
+    /// On the requested stop day.
     Until,
-    /// Without cash.
+    /// Bankruptcy.
     Bankruptcy,
 }
 
-/// What became of a run.
+/// The outcome of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Outcome {
     /// Seed.
@@ -87,17 +87,17 @@ pub struct Outcome {
     pub cash: f64,
     /// Active subscriptions of individuals.
     pub subscribers: u32,
-    /// Seats of active companies.
+    /// Seats of active enterprises.
     pub seats: u32,
     /// How it ended.
     pub ended: RunEnd,
     /// Hash of the last state.
     pub state_hash: String,
-    /// Whether demand surges can come.
+    /// Whether demand surges are possible.
     pub surges: bool,
-    /// Name of the kept run.
+    /// Name of the saved run, if any.
     pub run: Option<String>,
-    /// Time it took, seconds.
+    /// Elapsed time, seconds.
     pub seconds: f64,
 }
 
@@ -126,12 +126,12 @@ impl fmt::Display for Outcome {
     }
 }
 
-/// Why a run of a policy stopped.
+/// Reason why a policy's run failed.
 #[derive(Debug)]
 pub enum RunError {
-    /// The run could not begin.
+    /// The run could not start.
     Start(Box<SessionError>),
-    /// A tool refused a call.
+    /// A tool rejected a call.
     Refused {
         /// Seed.
         seed: u64,
@@ -139,7 +139,7 @@ pub enum RunError {
         day: u32,
         /// Tool.
         tool: String,
-        /// What it said.
+        /// Rejection.
         refusal: Box<Refusal>,
     },
 }
@@ -149,7 +149,7 @@ impl fmt::Display for RunError {
         match self {
             RunError::Start(error) => error.fmt(formatter),
             RunError::Refused { seed, day, tool, refusal } => {
-                write!(formatter, "seed {seed}, day {day}: {tool} was refused: {refusal}")
+                write!(formatter, "seed {seed}, day {day}: {tool} was rejected: {refusal}")
             }
         }
     }
@@ -163,10 +163,10 @@ impl From<SessionError> for RunError {
     }
 }
 
-/// Plays a policy to its end; `collector` sees every day.
+/// Plays a policy to its end; `collector` observes every day.
 ///
 /// # Errors
-/// The run cannot begin, or a tool refuses a call that may not fail.
+/// Fails if the run cannot start or a tool rejects a call that must succeed.
 pub fn play(
     policy: &Policy,
     spec: &RunSpec,
@@ -178,7 +178,7 @@ pub fn play(
     Ok(outcome(policy, spec.seed, &session, started.elapsed()))
 }
 
-/// The weeks of a policy played to its end.
+/// Plays a policy to its end and returns the weeks.
 pub(super) fn weeks_of(
     policy: &Policy,
     spec: &RunSpec,
@@ -188,7 +188,7 @@ pub(super) fn weeks_of(
     Ok(session.weeks().to_vec())
 }
 
-/// The session of a policy played to its end.
+/// Plays a policy to its end and returns the session.
 pub(super) fn play_session(
     policy: &Policy,
     spec: &RunSpec,
@@ -201,7 +201,7 @@ pub(super) fn play_session(
     Ok(session)
 }
 
-/// The same, seen day by day and as long as it is to go on after a week; it is not saved.
+/// Plays a policy without saving it. Observes each day, and asks after each week whether to continue.
 pub(super) fn play_while(
     goes_on: &dyn Fn() -> bool,
     policy: &Policy,
@@ -217,14 +217,14 @@ pub(super) fn play_while(
     Ok(session)
 }
 
-/// Whether a run is where it was to end.
+/// Returns whether a run reached its stop day or its end.
 pub(super) fn is_over(session: &Session, spec: &RunSpec) -> bool {
     session.ended().is_some() || spec.until.is_some_and(|until| session.day() >= until)
 }
 
-/// The run a policy asks for.
+/// Creates the session that a policy requests.
 pub(super) fn new_run(policy: &Policy, spec: &RunSpec) -> NewRun {
-    // What is set by name comes after what the policy says, and wins.
+    // Explicit overrides come after the policy's settings and take precedence.
     let mut overrides = Vec::new();
     if spec.surges.or(policy.start.surges) == Some(false) {
         overrides.push(("demand_surge.probability".to_owned(), "0.0".to_owned()));
@@ -251,12 +251,12 @@ pub(super) fn new_run(policy: &Policy, spec: &RunSpec) -> NewRun {
     }
 }
 
-/// The calls of a policy on the present decision day.
+/// Makes the calls of a policy on the current decision day.
 pub(super) fn decide(policy: &Policy, seed: u64, session: &mut Session) -> Result<(), RunError> {
     decide_telling(policy, seed, session, &mut |_| ())
 }
 
-/// The same; `tell` hears every answer.
+/// Makes the calls of a policy and passes every response to a callback.
 pub(super) fn decide_telling(
     policy: &Policy,
     seed: u64,
@@ -301,7 +301,7 @@ pub(super) fn decide_telling(
     Ok(())
 }
 
-/// A week, or the days up to the one to stop after; `watch` sees every day.
+/// Simulates a week, or the days up to the stop day; `watch` observes every day.
 pub(super) fn advance(
     policy: &Policy,
     seed: u64,
@@ -324,7 +324,7 @@ pub(super) fn advance(
     })
 }
 
-/// What became of a run that took so long.
+/// Returns the outcome of a session.
 pub(super) fn outcome(policy: &Policy, seed: u64, session: &Session, took: Duration) -> Outcome {
     let seen = session.company().observe();
     Outcome {

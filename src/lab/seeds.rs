@@ -1,11 +1,11 @@
-//! Seeds as people name them.
+//! Parses seeds and ranges of seeds.
 
 use novamind_base::notation::grouped;
 
-/// Most seeds that a range holds: more of them is a mistake of typing.
+/// Maximum number of seeds in a range. Larger ranges are probably typing errors.
 const MOST_SEEDS: u64 = 1_000_000;
 
-/// A seed or a range of seeds, both ends included.
+/// A seed or an inclusive range of seeds.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Seeds {
     /// First seed.
@@ -14,10 +14,10 @@ pub struct Seeds {
     pub last: u64,
 }
 
-/// Reads `7` or `1..24`.
+/// Parses `7` or `1..24`.
 ///
 /// # Errors
-/// It is neither, or a seed is above 2^63 - 1, or the range holds no seed, or more than `MOST_SEEDS`.
+/// Fails if the text is neither, a seed is above 2^63 - 1, or the range is empty or longer than `MOST_SEEDS`.
 pub fn parse_seeds(text: &str) -> Result<Seeds, String> {
     let number = |text: &str| text.trim().parse::<u64>().map_err(|_| format!("{text} is not a seed"));
     let seeds = match text.split_once("..") {
@@ -25,18 +25,15 @@ pub fn parse_seeds(text: &str) -> Result<Seeds, String> {
         None => number(text).map(|seed| Seeds { first: seed, last: seed })?,
     };
     if seeds.last > i64::MAX as u64 {
-        return Err(format!("a seed is at most {}, not {}", i64::MAX, seeds.last));
+        return Err(format!("a seed must be at most {}, not {}", i64::MAX, seeds.last));
     }
     if seeds.first > seeds.last {
-        return Err(format!("{}..{} holds no seed; put the smaller number first", seeds.first, seeds.last));
+        return Err(format!("{}..{} is empty; put the smaller number first", seeds.first, seeds.last));
     }
     let count = seeds.last - seeds.first + 1;
     if count > MOST_SEEDS {
         let (holds, most) = (grouped(count as f64, 0), grouped(MOST_SEEDS as f64, 0));
-        return Err(format!(
-            "{}..{} holds {holds} seeds; at most {most} are played",
-            seeds.first, seeds.last
-        ));
+        return Err(format!("{}..{} has {holds} seeds; the maximum is {most}", seeds.first, seeds.last));
     }
     Ok(seeds)
 }
@@ -51,10 +48,10 @@ mod tests {
         assert_eq!(parse_seeds("1..24"), Ok(Seeds { first: 1, last: 24 }));
         assert!(parse_seeds("1..1000000").is_ok());
         let many = parse_seeds("1..1000000000").expect_err("too many");
-        assert_eq!(many, "1..1000000000 holds 1,000,000,000 seeds; at most 1,000,000 are played");
+        assert_eq!(many, "1..1000000000 has 1,000,000,000 seeds; the maximum is 1,000,000");
         assert!(parse_seeds("9223372036854775807").is_ok());
         for above in ["9223372036854775808", "0..18446744073709551615"] {
-            assert!(parse_seeds(above).expect_err(above).contains("a seed is at most"));
+            assert!(parse_seeds(above).expect_err(above).contains("a seed must be at most"));
         }
         assert!(parse_seeds("5..4").is_err() && parse_seeds("x").is_err() && parse_seeds("1..").is_err());
     }

@@ -1,6 +1,6 @@
-//! Strong policies, written by hand: what a company is compared with (docs/interfaces/policies.md#strong-policies).
+//! Strong handwritten policies, for comparison with other runs (docs/interfaces/policies.md#strong-policies).
 
-/// Their names. They have demand surges as the scenario says, as a person has them.
+/// Names of the strong policies. They use the scenario's demand surges, as players do.
 pub const STRONG: [&str; 4] = ["ads-first", "enterprise-led", "harvest-late", "price-experimenting"];
 
 #[cfg(test)]
@@ -11,10 +11,10 @@ mod tests {
     use crate::{Collector, Policy, RunEnd, RunSpec, play};
     use novamind_record::folder::configuration::Configuration;
 
-    /// Seeds that no strong policy was tuned on; the second has a surge while companies sign.
+    /// Seeds on which no strong policy was tuned; the second has a surge while enterprises sign.
     const SEEDS: [u64; 2] = [113, 114];
 
-    /// Cash of a living company on day 70 of a run of 500 days, dollars.
+    /// Plays until day 70 of 500 and returns the cash in dollars.
     fn early_cash(name: &str, seed: u64) -> f64 {
         let configuration = Configuration::shipped();
         let policy = Policy::find(name, &configuration).expect(name);
@@ -30,7 +30,7 @@ mod tests {
             let baseline = early_cash("baseline", seed);
             let cash: Vec<f64> = STRONG.par_iter().map(|name| early_cash(name, seed)).collect();
             for (name, cash) in STRONG.iter().zip(cash) {
-                assert!(cash > 2.0 * baseline, "{name} on seed {seed}: {cash} beside {baseline}");
+                assert!(cash > 2.0 * baseline, "{name} on seed {seed}: {cash}, baseline {baseline}");
             }
         }
     }

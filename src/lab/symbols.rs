@@ -1,17 +1,17 @@
-//! Symbols in the arguments of policies: names that are resolved when a call is made
+//! Symbols in arguments of policies: names that are resolved at call time
 //! (docs/interfaces/policies.md#symbols).
 
 use serde_json::{Map, Value};
 
 use novamind_world::identifiers::{Channel, Group};
 
-/// What symbols stand for.
+/// Values of symbols.
 pub struct Symbols {
     known: Vec<Group>,
 }
 
 impl Symbols {
-    /// Symbols for a company that knows these groups.
+    /// Creates the symbols for a company that knows these groups.
     pub fn of(known: impl IntoIterator<Item = Group>) -> Symbols {
         Symbols { known: known.into_iter().collect() }
     }
@@ -20,7 +20,7 @@ impl Symbols {
         self.known.iter().copied().filter(|group| !group.initially_known())
     }
 
-    /// Names a symbol stands for; none if the text is no symbol.
+    /// Returns the names that a symbol represents, or `None` if the text is not a symbol.
     fn members(&self, text: &str) -> Option<Vec<String>> {
         let names =
             |groups: &mut dyn Iterator<Item = Group>| groups.map(|group| group.id().to_owned()).collect();
@@ -36,8 +36,8 @@ impl Symbols {
         })
     }
 
-    /// The calls that arguments with symbols stand for: one per member of a symbol that is the value of an
-    /// argument, none if any symbol stands for nothing.
+    /// Expands arguments with symbols into calls: one per member of a symbol that is the value of an
+    /// argument. Returns no calls if any symbol is empty.
     pub fn resolve(&self, arguments: &Value) -> Vec<Value> {
         let Some(map) = arguments.as_object() else { return vec![arguments.clone()] };
         let mut calls = vec![Map::new()];
@@ -60,7 +60,7 @@ impl Symbols {
         calls.into_iter().map(Value::Object).collect()
     }
 
-    /// A map with its symbol keys spread out; written entries win. None if a symbol stands for nothing.
+    /// Expands the symbol keys of a map; explicit entries take precedence. Returns `None` if a symbol is empty.
     fn expanded(&self, value: &Value) -> Option<Value> {
         let Some(map) = value.as_object() else { return Some(value.clone()) };
         let mut spread = Map::new();

@@ -1,4 +1,4 @@
-//! Laboratory commands from a shell: tables, JSON, drawings, invalid grids.
+//! Laboratory commands: tables, JSON, drawings, invalid grids.
 
 use std::fs;
 
@@ -33,7 +33,7 @@ fn what_needs_no_run_is_told_in_every_form() {
     let path = drawing.to_string_lossy();
     assert_eq!(home.run(&["lab", "curves", "--svg", &path]).code, 0);
     assert!(fs::read_to_string(&drawing).expect("a drawing").starts_with("<svg"));
-    // Other parameters give another account.
+    // Changed parameters change the account.
     let own = |row: usize, arguments: &[&str]| {
         let all = json(&home, &[&["lab", "bound"], arguments].concat());
         all["tables"]["account"]["rows"][row]["own"].as_f64().expect("a number")
@@ -43,10 +43,11 @@ fn what_needs_no_run_is_told_in_every_form() {
     assert!(own(development, &off) < own(development, &[]), "without competitors development is cheap");
     let said = json(&home, &["lab", "bound", "--scenario", "competitor-off"]).to_string();
     assert!(
-        said.contains("no rivals: the parameters in force have none") && !said.contains("lucks"),
+        said.contains("no competitors: the current parameters have none")
+            && !said.contains("seeds of the simulator"),
         "{said}"
     );
-    // If development is paid once instead of three times, more cash remains.
+    // With slack 1, the estimate is higher without competitors.
     let once = ["--slack", "1"];
     assert!(own(estimate, &[once, off].concat()) > own(estimate, &once));
 }
@@ -86,12 +87,12 @@ fn a_grid_of_ones_own_is_played_once_and_a_wrong_one_names_line_and_key() {
     let first = json(&home, &arguments);
     let cash =
         |at: usize| first["tables"]["configurations"]["rows"][at]["median_cash"].as_f64().expect("cash");
-    assert!(cash(0) > cash(1), "a cash floor that is reached early ends spending");
+    assert!(cash(0) > cash(1), "a high floor stops spending early");
     assert_eq!(first["tables"]["configurations"]["rows"][0]["floor"], "high");
     let store = home.runs().join(".lab/baseline.jsonl");
     let kept = fs::read_to_string(&store).expect("results");
     assert_eq!(json(&home, &arguments), first);
-    assert_eq!(fs::read_to_string(&store).expect("results"), kept, "nothing is played again");
+    assert_eq!(fs::read_to_string(&store).expect("results"), kept, "stored runs are not repeated");
     fs::write(&path, grid.replace("990_000", "990_000, cashfloor = 1")).expect("a file");
     let said = home.run(&arguments);
     assert!(

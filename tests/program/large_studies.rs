@@ -1,4 +1,4 @@
-//! Large studies: split by a scheduler, killed, repeated, merged; a full disk, a stop, invalid paths.
+//! Large studies: split by a job scheduler, killed, repeated and merged; a full disk, an interruption, invalid paths.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ days = 28
 "#;
 
 const SHARDS: usize = 4;
-/// The shard that is killed.
+/// The shard that the test kills.
 const KILLED: usize = 3;
 
 fn study(home: &Home, text: &str) -> String {
@@ -28,13 +28,13 @@ fn study(home: &Home, text: &str) -> String {
     path.to_string_lossy().into_owned()
 }
 
-/// Returns the files with cached runs.
+/// Returns the files with stored runs.
 fn kept(home: &Home) -> Vec<PathBuf> {
     let entries = fs::read_dir(home.runs().join(".lab/studies")).into_iter().flatten().flatten();
     entries.map(|entry| entry.path()).collect()
 }
 
-/// Returns the number of cached runs of a shard, or of the whole study.
+/// Counts the stored runs of a shard or of the unsplit study.
 fn kept_runs(home: &Home, ending: &str) -> usize {
     let own = kept(home).into_iter().find(|path| path.to_string_lossy().ends_with(ending));
     let bytes = own.and_then(|path| fs::read(path).ok()).unwrap_or_default();
@@ -50,7 +50,7 @@ fn signal(name: &str, process: &str) {
 fn wait_for(what: &str, mut is_so: impl FnMut() -> bool) {
     let begun = Instant::now();
     while !is_so() {
-        assert!(begun.elapsed() < Duration::from_secs(300), "{what} does not come");
+        assert!(begun.elapsed() < Duration::from_secs(300), "timed out waiting for {what}");
         std::thread::sleep(Duration::from_millis(2));
     }
 }
@@ -74,7 +74,7 @@ impl Scheduler<'_> {
         Scheduler { home, file, out, has_parallel }
     }
 
-    /// Returns the shell command of a shard, which writes its process id.
+    /// Returns the shell command of a shard, which writes its process ID to a file.
     fn shard(&self, shard: &str) -> String {
         let folder = self.home.0.path().display();
         format!(
@@ -85,7 +85,7 @@ impl Scheduler<'_> {
         )
     }
 
-    /// Starts all shards, or those that failed before.
+    /// Starts all shards, or those that failed.
     fn start(&self, only_failed: bool) -> Vec<Child> {
         let quiet = |command: &mut Command| {
             command
@@ -111,7 +111,7 @@ impl Scheduler<'_> {
         vec![quiet(&mut command)]
     }
 
-    /// Waits for all shards; returns whether all succeeded.
+    /// Waits for all shards and returns whether all succeeded.
     fn wait(children: Vec<Child>) -> bool {
         let ended = children.into_iter().map(|mut child| child.wait().expect("it ends").success());
         ended.collect::<Vec<bool>>().into_iter().all(|own| own)
@@ -143,9 +143,9 @@ fn shards_of_which_one_was_killed_and_repeated_are_the_study_that_was_not_split(
     assert_eq!(
         kept_runs(&home, &own),
         25 + usize::from(has_half_a_line(&home, &own)),
-        "no run is played twice"
+        "every run is played once"
     );
-    assert_eq!(kept_runs(&home, ".1-of-4.jsonl"), 25, "the others are not played again");
+    assert_eq!(kept_runs(&home, ".1-of-4.jsonl"), 25, "complete shards are not repeated");
     let merged = home.run(&["lab", "merge", &folder]);
     assert_eq!((merged.code, merged.err.as_str()), (0, ""));
     assert_eq!(merged.out.as_bytes(), whole.out.as_bytes());
@@ -154,7 +154,7 @@ fn shards_of_which_one_was_killed_and_repeated_are_the_study_that_was_not_split(
     assert_eq!(fs::read(&into).expect("rows"), whole.out.as_bytes());
 }
 
-/// Returns whether the kill cut a line off. It stays, and its run was played again.
+/// Returns whether the kill truncated a line. Such a line stays, and its run is played again.
 fn has_half_a_line(home: &Home, ending: &str) -> bool {
     let own = kept(home).into_iter().find(|path| path.to_string_lossy().ends_with(ending)).expect("a file");
     let text = fs::read_to_string(own).expect("lines");
@@ -179,12 +179,12 @@ fn ctrl_c_keeps_what_is_done_and_the_same_command_goes_on() {
     assert_eq!((output.status.code(), output.stdout.len()), (Some(130), 0), "{told}");
     let done = kept_runs(&home, ".jsonl");
     assert!(
-        told.contains(&format!("stopped: {done} of 20 runs are kept, and the same command goes on")),
+        told.contains(&format!("stopped: {done} of 20 runs are stored; the same command resumes")),
         "{told}"
     );
     let rest = home.run(&["lab", "study", &file]);
     assert_eq!((rest.code, rest.out), (0, whole.out));
-    assert_eq!(kept_runs(&home, ".jsonl"), 20, "no run is played twice");
+    assert_eq!(kept_runs(&home, ".jsonl"), 20, "every run is played once");
 }
 
 #[test]
@@ -194,22 +194,22 @@ fn a_full_disk_loses_nothing_that_was_kept() {
     let into = home.0.path().join("few.csv").to_string_lossy().into_owned();
     let whole = alone.run(&["lab", "study", &file]).out;
     let program = env!("CARGO_BIN_EXE_novamind");
-    // Blocks of 512 bytes: space for some of the runs, and then for all of them but not for the rows.
+    // In blocks of 512 bytes: enough for some of the runs, then for all runs but not for the rows.
     let limited = |blocks: usize, more: &str| {
         let script = format!(
             "trap '' XFSZ; ulimit -f {blocks}; exec '{program}' lab study '{file}' --out '{into}' {more}"
         );
         said(home.command("sh").args(["-c", &script]), "")
     };
-    limited(8, "--jobs 1").fails(1, &["few.", ".jsonl", "File too large", "is safe"]);
+    limited(8, "--jobs 1").fails(1, &["few.", ".jsonl", "File too large", "are safe"]);
     let before = kept_runs(&home, ".jsonl");
     assert!((1..20).contains(&before), "{before}");
     let last = fs::read(&kept(&home)[0]).expect("runs");
-    assert!(last.ends_with(b"\n"), "the part that did not fit is removed");
-    assert_eq!(home.run(&["lab", "study", &file]).out, whole, "there is space again");
+    assert!(last.ends_with(b"\n"), "a partial line is removed");
+    assert_eq!(home.run(&["lab", "study", &file]).out, whole, "there is room again");
     assert_eq!(kept_runs(&home, ".jsonl"), 20);
-    limited(1, "").fails(1, &["few.csv", "File too large", "finished runs are saved"]);
-    assert!(!Path::new(&into).exists(), "an incomplete table is not written");
+    limited(1, "").fails(1, &["few.csv", "File too large", "runs are kept"]);
+    assert!(!Path::new(&into).exists(), "no partial table is written");
     let told = home.run(&["lab", "study", &file, "--out", &into]);
     assert_eq!(told.code, 0, "{}", told.err);
     assert_eq!(fs::read_to_string(&into).expect("rows"), whole);
@@ -225,7 +225,7 @@ fn places_that_cannot_be_written_are_told_before_anything_is_played() {
     home.run(&["lab", "study", &file, "--shard", "1/2", "--out", &inside]).fails(1, &["study.toml/shards"]);
     assert_eq!(kept_runs(&home, ".jsonl"), 0);
     let wrong = home.run(&["lab", "study", &file, "--shard", "3/2", "--out", "x"]);
-    assert!(wrong.code == 2 && wrong.err.contains("3/2 is no shard"), "{}", wrong.err);
+    assert!(wrong.code == 2 && wrong.err.contains("3/2 is not a shard"), "{}", wrong.err);
     fs::write(home.runs().join(".lab"), "a file").expect("a file");
     home.run(&["lab", "study", &file]).fails(1, &[".lab"]);
     let wrong = study(&home, "name = \"x\"\npolicies = [\"P0\"]\nseeds = 1\nday = 4\n");

@@ -1,11 +1,11 @@
-//! The laboratory's tables of your runs: results compared with published ones, behavior, common random draws.
+//! The laboratory's tables of own runs: results and published figures, behavior, common random draws.
 
 use std::collections::BTreeMap;
 use std::fs;
 
 use crate::support::home::{Home, Said, id};
 
-/// Returns rows of comma-separated values by column names.
+/// Parses CSV rows by column name.
 fn rows(said: &Said) -> Vec<BTreeMap<String, String>> {
     assert_eq!(said.code, 0, "{}", said.err);
     let mut reader = csv::Reader::from_reader(said.out.as_bytes());
@@ -21,7 +21,7 @@ fn the_results_table_holds_comparable_runs_and_says_why_others_are_not_there() {
     let home = Home::new();
     let saved = home.run(&["run", "--policy", "P0", "--seed", "7", "--surges", "on", "--save"]);
     assert_eq!(saved.code, 0, "{}", saved.err);
-    // A changed parameter, and another length.
+    // A changed parameter, and a different length.
     for options in [&["--surges", "off", "--days", "500"][..], &["--surges", "on", "--days", "28"]] {
         let said = home.run(&[&["run", "--policy", "P0", "--save"], options].concat());
         assert_eq!(said.code, 0, "{}", said.err);
@@ -31,7 +31,7 @@ fn the_results_table_holds_comparable_runs_and_says_why_others_are_not_there() {
     assert_eq!([&own["bankrupt"], &own["runs"], &own["source"]], ["0", "1", "own policy"]);
     let idle = named(&table, "idle company");
     for column in ["best_cash", "beats", "max_survival_days", "calls_per_week"] {
-        assert_eq!(own[column], idle[column], "{column}: doing nothing knows no luck");
+        assert_eq!(own[column], idle[column], "{column}: an idle company does not depend on the seed");
     }
     assert_eq!(idle["beats"], "13");
     assert_eq!(named(&table, "GPT-5.6 Sol")["std_survival_days"], "145.7");
@@ -107,8 +107,8 @@ fn common_luck_is_tried_with_policies_of_ones_own() {
     };
     assert_eq!(verdict("index of the economy"), ("holds".to_owned(), "0".to_owned()));
     assert_eq!(verdict("same company"), ("holds".to_owned(), "0".to_owned()));
-    assert_eq!(verdict("R&D tier").0, "not tried", "neither starts a project");
-    home.run(&["lab", "consistency", "--policy", "P0"]).fails(2, &["twice"]);
+    assert_eq!(verdict("R&D tier").0, "not tried", "neither policy starts a project");
+    home.run(&["lab", "consistency", "--policy", "P0"]).fails(2, &["both policies are the same"]);
 }
 
 #[test]
@@ -125,13 +125,13 @@ fn many_runs_are_compared_in_rows_that_fit() {
     let said = home.run(&compare);
     assert_eq!(said.code, 0, "{}", said.err);
     assert!(said.out.lines().all(|line| line.chars().count() <= 80), "{}", said.out);
-    assert!(said.out.starts_with("3 runs, the best result first"), "{}", said.out);
+    assert!(said.out.starts_with("3 runs, best result first"), "{}", said.out);
     for run in &runs {
         assert!(said.out.contains(run), "{}", said.out);
     }
 }
 
-/// Returns the first two cells of the rows of a section's table, by command.
+/// Returns the commands of a section and their expected output: the first two cells of its table rows, by command.
 fn claims_of(section: &str) -> BTreeMap<&'static str, Vec<&'static str>> {
     let page = include_str!("../../docs/experiments.md");
     let (_, from) = page.split_once(&format!("\n## {section}\n")).expect(section);
@@ -153,7 +153,7 @@ fn commands_say_what_is_claimed(section: &str) {
         let said = home.run(&command.split(' ').collect::<Vec<_>>());
         assert_eq!(said.code, 0, "{command}: {}", said.err);
         for says in claims {
-            assert!(said.out.contains(says), "{command} does not say {says}: {}", said.out);
+            assert!(said.out.contains(says), "{command} does not print {says}: {}", said.out);
         }
     }
 }

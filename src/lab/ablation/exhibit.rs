@@ -1,4 +1,4 @@
-//! What each step of the rivals costs: figures of the arms, differences seed by seed, curves.
+//! Tables and graphs of the ablation: figures by arm, paired differences between neighboring arms, curves.
 
 use super::rivals::{RivalSetting, reference};
 use crate::exhibit::{
@@ -8,42 +8,42 @@ use crate::experiment::{ExperimentResults, RunResult};
 use novamind_base::statistics::{Interval, LEAST, PairedDifference, mean, median};
 use novamind_report::count;
 
-/// One axis of the ablation, played.
+/// The results of one axis of the ablation.
 pub struct Axis<'a> {
     /// Name for programs.
     pub name: &'static str,
-    /// What varies, and with which policy.
+    /// Caption: what varies and which policy plays.
     pub caption: String,
     /// Name of the policy.
     pub policy: &'a str,
     /// Arms.
     pub settings: &'a [RivalSetting],
-    /// Results, one arm for each setting.
+    /// Results, one arm per setting.
     pub results: &'a ExperimentResults,
 }
 
-/// A policy over the short horizon, played without rivals and with.
+/// The results of a policy over the short horizon, with and without competitors.
 pub struct ShortRun<'a> {
     /// Policy.
     pub name: &'a str,
-    /// Settings of the rivals: off, default, hard.
+    /// Competitor settings: off, default, hard.
     pub settings: &'a [RivalSetting],
-    /// Results, one arm for each setting.
+    /// Results, one arm per setting.
     pub results: &'a ExperimentResults,
 }
 
-/// Days of the short horizon: rivals and taste wait longer.
+/// Days of the short horizon. Competitors and drift start later.
 pub const SHORT_DAYS: u32 = 50;
 
-/// Cash that a run of the short horizon begins with, dollars: what it is compared with.
+/// Starting cash of a short run in dollars; final cash is compared with it.
 const START: f64 = 1e6;
 
-/// The ablation: subscribers on a day, the end of the runs, steps, the short horizon.
+/// Returns the tables and graphs of the ablation: subscribers on `day`, final figures, steps, and short runs.
 pub fn ablation_exhibit(axes: &[Axis<'_>], short: &[ShortRun<'_>], day: u32) -> Exhibit {
     let seeds = axes.first().map_or(0, |axis| axis.results.seeds.len());
     let mut exhibit = Exhibit {
         title: format!(
-            "Rivals that copy and drain, {}, the same luck in every arm",
+            "Competitors that copy and drain, {}, same random draws in every arm",
             count(seeds as u32, "seed")
         ),
         tables: Vec::new(),
@@ -59,19 +59,19 @@ pub fn ablation_exhibit(axes: &[Axis<'_>], short: &[ShortRun<'_>], day: u32) -> 
     exhibit.tables.push(short_runs(short));
     exhibit.tables.push(every_run(axes, short, day));
     exhibit.notes.push(format!(
-        "Over {SHORT_DAYS} days there are neither rivals nor drift, for both wait longer: what is measured there says nothing about them."
+        "Within {SHORT_DAYS} days neither competitors nor drift are active, so the short runs do not measure them."
     ));
     exhibit.notes.push(
-        "u: the share of the shared bank that an event can copy; it touches nothing that was developed for one group. Drain: the share of a group's targeted bank that an event copies."
+        "u: share of shared improvements that a competitor event can copy; targeted development is not affected. Drain: share of a group's targeted improvements that an event copies."
             .to_owned(),
     );
     exhibit.notes.push(format!(
-        "An event applies what it copies only if that is more than its own size. Subscribers are those at the end of day {day}; a run that went bankrupt before counts with 0. Intervals and verdicts need {LEAST} seeds or more."
+        "An event uses the copied improvement only if it is larger than the event's own size. Subscribers are those at the end of day {day}; a run that went bankrupt earlier counts as 0. Intervals and verdicts need at least {LEAST} seeds."
     ));
     exhibit
 }
 
-/// Subscribers at the end of a day; none after a bankruptcy.
+/// Returns the subscribers at the end of a day; 0 after a bankruptcy.
 fn subscribers_on(run: &RunResult, day: u32) -> f64 {
     run.weeks.iter().find(|week| week.day == day).map_or(0.0, |week| f64::from(week.subscribers))
 }
@@ -105,7 +105,6 @@ fn arms(axis: &Axis<'_>, day: u32) -> Tabulation {
     table
 }
 
-/// What each step from one setting to the next costs, seed by seed.
 fn steps(axis: &Axis<'_>, day: u32) -> Tabulation {
     let columns = vec![
         Column::words("step", "from, to"),
@@ -114,7 +113,7 @@ fn steps(axis: &Axis<'_>, day: u32) -> Tabulation {
         Column::numbers("seeds", "seeds that lose", Measure::Count),
         Column::words("verdict", "order"),
     ];
-    let mut table = Tabulation::new(&format!("{}_steps", axis.name), "Steps, by paired differences", columns);
+    let mut table = Tabulation::new(&format!("{}_steps", axis.name), "Steps, paired differences", columns);
     for (at, pair) in axis.settings.windows(2).enumerate() {
         let pairs = axis.results.pairs(at, at + 1, |run| subscribers_on(run, day));
         let Some(own) = PairedDifference::of(pairs) else { continue };
@@ -135,11 +134,11 @@ fn verdict(own: &PairedDifference) -> &'static str {
         Some(Interval { low, .. }) if low > 0.0 => "loses",
         Some(Interval { high, .. }) if high < 0.0 => "gains",
         Some(Interval { low, high }) if low == 0.0 && high == 0.0 => "identical",
-        Some(_) => "not told apart",
+        Some(_) => "inconclusive",
     }
 }
 
-/// Whether default and hard rivals come to the same, run by run.
+/// Returns a note on how many runs are identical under default and hard competitors.
 fn alike(axis: &Axis<'_>) -> String {
     let place = |name: &str| axis.settings.iter().position(|own| own.name == name);
     let (Some(default), Some(hard)) = (place("default"), place("hard")) else { return String::new() };
@@ -147,7 +146,7 @@ fn alike(axis: &Axis<'_>) -> String {
     let runs = |arm: usize| axis.results.by_arm.get(arm).map_or(&[][..], Vec::as_slice);
     let same = runs(default).iter().zip(runs(hard)).filter(|(own, other)| ends(own) == ends(other)).count();
     format!(
-        "{}: default and hard rivals are identical in {same} of {}.",
+        "{}: default and hard competitors are identical in {same} of {}.",
         axis.caption,
         count(runs(default).len() as u32, "seed")
     )
@@ -168,8 +167,7 @@ fn curves(axis: &Axis<'_>) -> Graph {
     });
     Graph {
         title: axis.caption.clone(),
-        summary: "Mean subscribers by day on a logarithmic axis, one line for each setting of the rivals"
-            .to_owned(),
+        summary: "Mean subscribers by day on a logarithmic axis, one line per competitor setting".to_owned(),
         across: GraphAxis { label: "day", scale: AxisScale::Whole },
         up: GraphAxis { label: "subscribers", scale: AxisScale::Logarithmic },
         series: series.collect(),
@@ -183,10 +181,10 @@ fn short_runs(short: &[ShortRun<'_>]) -> Tabulation {
         Column::numbers("cash", "mean cash", Measure::Dollars),
         Column::intervals("cash_interval", "95 % interval", Measure::Dollars),
         Column::numbers("gained", "seeds above $1,000,000", Measure::Count),
-        Column::numbers("alike", "seeds alike with rivals off, default, hard", Measure::Count),
+        Column::numbers("alike", "seeds equal with rivals off, default, hard", Measure::Count),
         Column::numbers("seeds", "seeds", Measure::Count),
     ];
-    let caption = format!("{SHORT_DAYS} days: neither rivals nor drift");
+    let caption = format!("{SHORT_DAYS} days: neither competitors nor drift");
     let mut table = Tabulation::new("short", caption, columns);
     for own in short {
         let cash = own.results.of(0, |run| run.cash);
@@ -208,7 +206,6 @@ fn short_runs(short: &[ShortRun<'_>]) -> Tabulation {
     table
 }
 
-/// Every run, for programs.
 fn every_run(axes: &[Axis<'_>], short: &[ShortRun<'_>], day: u32) -> Tabulation {
     let columns = vec![
         Column::words("axis", "axis"),

@@ -1,4 +1,4 @@
-//! What rivals cost: they copy what is shared and drain what is targeted (docs/laboratory/ablation.md).
+//! Effect of competitors that copy shared development and drain targeted development (docs/laboratory/ablation.md).
 
 mod exhibit;
 mod probes;

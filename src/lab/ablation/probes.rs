@@ -1,21 +1,21 @@
-//! The policies that rivals are shown against.
+//! Policies that play against the competitor settings.
 
 use crate::baseline::{Grid, PAPER};
 use crate::policy::{Policy, PolicyError, RuleBased};
 use novamind_world::params::ParameterSource;
 
-/// The probe whose development is shared by all groups.
+/// Returns the probe that buys general development only.
 ///
 /// # Errors
-/// The shipped file is wrong.
+/// Fails if the bundled file is invalid.
 pub fn shared_probe() -> Result<Policy, PolicyError> {
     shipped("shared", include_str!("../../../configs/probes/shared.toml"))
 }
 
-/// The probe whose development is for one group.
+/// Returns the probe that buys targeted development for one group.
 ///
 /// # Errors
-/// The shipped file is wrong.
+/// Fails if the bundled file is invalid.
 pub fn targeted_probe() -> Result<Policy, PolicyError> {
     shipped("targeted", include_str!("../../../configs/probes/targeted.toml"))
 }
@@ -24,11 +24,11 @@ fn shipped(name: &str, text: &str) -> Result<Policy, PolicyError> {
     Policy::parse(&ParameterSource { name: format!("configs/probes/{name}.toml"), text: text.to_owned() })
 }
 
-/// Policies that are played over the short horizon beside the probe: the paper's best configuration, and the one that
+/// Returns the policies of the short horizon: the paper's best configuration, and the configuration that
 /// advertises from the first day.
 ///
 /// # Errors
-/// The shipped grids are wrong.
+/// Fails if a bundled grid is invalid.
 pub fn short_run_policies() -> Result<Vec<(&'static str, Policy)>, PolicyError> {
     let of = |grid: &str, wanted: &dyn Fn(&Policy) -> bool| -> Result<Option<Policy>, PolicyError> {
         let all = Grid::find(grid)?.configurations;

@@ -1,16 +1,16 @@
-//! Rivals that copy more and more, and rivals that drain more and more.
+//! Competitor settings of the two axes: copying and draining.
 
 use crate::experiment::Arm;
 use crate::policy::Policy;
 
-/// How rivals behave in an arm.
+/// The competitor behavior of an arm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RivalSetting {
     /// Name in tables.
     pub name: &'static str,
     /// Scenario.
     pub scenario: &'static str,
-    /// Least and most of the share of a targeted bank that an event drains; none: as the scenario says.
+    /// Minimum and maximum share of a targeted bank that an event drains; `None`: from the scenario.
     drain: Option<(&'static str, &'static str)>,
 }
 
@@ -22,7 +22,7 @@ const fn drain(name: &'static str, least: &'static str, most: &'static str) -> R
     RivalSetting { name, scenario: "default", drain: Some((least, most)) }
 }
 
-/// Shares of the shared bank that an event can copy, from no rivals to hard ones.
+/// Settings of the copying axis, from no competitors to hard ones.
 pub const COPY: [RivalSetting; 7] = [
     scenario("off", "competitor-off"),
     scenario("stationary", "competitor-stationary"),
@@ -33,7 +33,7 @@ pub const COPY: [RivalSetting; 7] = [
     scenario("hard", "competitor-hard"),
 ];
 
-/// Shares of a targeted bank that an event drains, beside rivals who copy more of the shared one.
+/// Settings of the draining axis, plus hard competitors for comparison.
 pub const DRAIN: [RivalSetting; 6] = [
     scenario("off", "competitor-off"),
     drain("no drain", "0.0", "0.0"),
@@ -43,12 +43,12 @@ pub const DRAIN: [RivalSetting; 6] = [
     drain("drain to 0.2", "0.0", "0.2"),
 ];
 
-/// Arm of a list whose results the others are compared with.
+/// Name of the arm that the others are compared with.
 pub fn reference(settings: &[RivalSetting]) -> usize {
     settings.iter().position(|own| own.name == "default").unwrap_or(0)
 }
 
-/// A policy against each of some rivals, over so many days.
+/// Returns the arms in which a policy plays each competitor setting.
 pub fn arms(policy: &Policy, settings: &[RivalSetting], days: u32) -> Vec<Arm> {
     let arm = |own: &RivalSetting| {
         let mut arm = Arm::new(own.name, policy.clone());

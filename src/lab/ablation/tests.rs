@@ -2,7 +2,7 @@ use super::*;
 use crate::experiment::{ExperimentResults, test_kit};
 use crate::policy::Policy;
 
-/// A policy against rivals, until a day of a run of so many.
+/// Plays a policy against competitor settings, over (days, last day).
 fn played(policy: &Policy, settings: &[RivalSetting], (days, until): (u32, u32)) -> ExperimentResults {
     let mut arms = arms(policy, settings, days);
     arms.iter_mut().for_each(|arm| arm.spec.until = Some(until));
@@ -21,7 +21,7 @@ fn copying_costs_shared_development_and_draining_targeted_one() {
         let [off, default, hard] = [0, 1, 2].map(|arm| at(&copy, arm)[seed]);
         assert!(off > default && default >= hard, "{off} {default} {hard}");
     }
-    // With targeted spending alone, default and hard rivals are the same; draining is not.
+    // With targeted spending alone, default and hard competitors have the same effect; draining has not.
     let drain =
         played(&targeted, &pick(&DRAIN, &["no drain", "default", "hard", "drain to 0.2"]), (500, 105));
     assert_eq!(at(&drain, 1), at(&drain, 2));
@@ -53,7 +53,7 @@ fn fifty_days_have_neither_rivals_nor_drift() {
     assert_eq!(runs[12][..4], ["short", "the probe", "hard", "2"]);
     assert_eq!(runs[1][7], results.by_arm[0][0].cash.to_string());
     let text = exhibit.as_text(100);
-    assert!(text.contains("neither rivals nor drift") && text.contains("identical in 2 of 2"), "{text}");
+    assert!(text.contains("neither competitors nor drift") && text.contains("identical in 2 of 2"), "{text}");
     let named: Vec<&str> = short_run_policies().expect("policies").iter().map(|(name, _)| *name).collect();
     assert_eq!(named, ["the paper's baseline", "ads from day 0"]);
 }

@@ -1,4 +1,4 @@
-//! The configurations as a table: as the paper's for one seed, with spread and stability for many.
+//! Tables of configurations: the paper's columns for one seed, spread and rank stability for several.
 
 use super::grid::Grid;
 use crate::exhibit::{
@@ -10,7 +10,7 @@ use novamind_base::notation::dollars;
 use novamind_base::statistics::{Interval, Quartiles, mean, median};
 use novamind_report::ranking::published;
 
-/// The configurations of a grid with what became of them.
+/// Returns the results of a grid's configurations.
 pub fn baseline_exhibit(grid: &Grid, is_published: bool, results: &ExperimentResults) -> Exhibit {
     let board = Board::of(results);
     let count = results.seeds.len();
@@ -32,12 +32,12 @@ pub fn baseline_exhibit(grid: &Grid, is_published: bool, results: &ExperimentRes
     exhibit
 }
 
-/// Results with the places of the configurations.
+/// Results with ranks.
 struct Board<'a> {
     results: &'a ExperimentResults,
-    /// Configurations, the best first: by median final cash.
+    /// Configurations by median final cash, highest first.
     order: Vec<usize>,
-    /// Places by seed and configuration.
+    /// Ranks by seed and configuration.
     by_seed: Vec<Vec<f64>>,
 }
 
@@ -58,7 +58,7 @@ impl<'a> Board<'a> {
         self.results.by_arm.get(arm).map_or(&[], Vec::as_slice)
     }
 
-    /// Share of the seeds in which a configuration is first, alone or with others.
+    /// Returns the share of seeds in which a configuration ranks first, including ties.
     fn first(&self, arm: usize) -> f64 {
         let least = |places: &[f64]| places.iter().copied().fold(f64::INFINITY, f64::min);
         let firsts =
@@ -71,12 +71,10 @@ impl<'a> Board<'a> {
     }
 }
 
-/// A column for each axis.
 fn head(grid: &Grid) -> Vec<Column> {
     grid.axes.iter().map(|axis| Column::words(&column_name(axis), axis)).collect()
 }
 
-/// The levels of a configuration.
 fn levels(grid: &Grid, arm: usize) -> Vec<Datum> {
     grid.configurations[arm].levels.iter().map(Datum::words).collect()
 }
@@ -89,7 +87,7 @@ fn of_one_seed(grid: &Grid, board: &Board<'_>) -> Tabulation {
         Column::numbers("peak", "peak subscribers", Measure::Count),
         Column::numbers("peak_day", "on day", Measure::Days),
     ]);
-    let mut table = Tabulation::new("configurations", "The best first", columns);
+    let mut table = Tabulation::new("configurations", "Highest final cash first", columns);
     for arm in &board.order {
         let Some(run) = board.runs(*arm).first() else { continue };
         let mut row = levels(grid, *arm);
@@ -113,7 +111,7 @@ fn over_seeds(grid: &Grid, board: &Board<'_>) -> Tabulation {
         Column::numbers("upper_quartile", "upper quartile", Measure::Dollars),
         Column::numbers("bankrupt", "bankrupt", Measure::Share),
     ]);
-    let mut table = Tabulation::new("configurations", "The best first, by median final cash", columns);
+    let mut table = Tabulation::new("configurations", "Highest median final cash first", columns);
     for arm in &board.order {
         let of = |figure: fn(&RunResult) -> f64| board.results.of(*arm, figure);
         let cash = of(|run| run.cash);
@@ -137,9 +135,9 @@ fn stability(grid: &Grid, board: &Board<'_>) -> Tabulation {
         Column::numbers("survival", "mean survival, days", Measure::Number(1)),
         Column::numbers("peak", "median peak subscribers", Measure::Count),
         Column::numbers("first", "best in", Measure::Share),
-        Column::numbers("place", "mean place", Measure::Number(1)),
+        Column::numbers("place", "mean rank", Measure::Number(1)),
     ]);
-    let mut table = Tabulation::new("stability", "Survival, size, and places by final cash", columns);
+    let mut table = Tabulation::new("stability", "Survival, size, and rank by final cash", columns);
     for arm in &board.order {
         let of = |figure: fn(&RunResult) -> f64| board.results.of(*arm, figure);
         let mut row = levels(grid, *arm);
@@ -158,11 +156,11 @@ fn best_by_seed(grid: &Grid, board: &Board<'_>) -> Tabulation {
     let mut columns = vec![Column::words("seed", "seed")];
     columns.extend(head(grid));
     columns.extend([
-        Column::numbers("equal", "equal to it", Measure::Count),
+        Column::numbers("equal", "ties", Measure::Count),
         Column::numbers("cash", "its cash", Measure::Dollars),
         Column::numbers("bankrupt", "bankrupt", Measure::Count),
     ]);
-    let mut table = Tabulation::new("seeds", "The best configuration of each seed", columns);
+    let mut table = Tabulation::new("seeds", "Best configuration of each seed", columns);
     for (at, seed) in board.results.seeds.iter().enumerate() {
         let run = |arm: usize| board.runs(arm).get(at);
         let cash = |arm: &usize| run(*arm).map_or(f64::NEG_INFINITY, |own| own.cash);
@@ -179,18 +177,17 @@ fn best_by_seed(grid: &Grid, board: &Board<'_>) -> Tabulation {
     table
 }
 
-/// The configurations that are first together: the first of them by name, and how many more.
+/// Describes the configurations that share first place: one of them by name, and the number of others.
 fn labels(grid: &Grid, first: &[usize]) -> String {
     match first {
         [] => String::new(),
         [one] => grid.configurations[*one].label(),
         [one, rest @ ..] => {
-            format!("{} and {} equal to it", grid.configurations[*one].label(), rest.len())
+            format!("{} and {} ties", grid.configurations[*one].label(), rest.len())
         }
     }
 }
 
-/// Every run with its levels, for programs: people read the tables above.
 fn every_run(grid: &Grid, board: &Board<'_>) -> Tabulation {
     let mut columns = head(grid);
     columns.extend([
@@ -219,14 +216,13 @@ fn every_run(grid: &Grid, board: &Board<'_>) -> Tabulation {
     table
 }
 
-/// Final cash of each configuration on one seed, the best first.
 fn bars(board: &Board<'_>) -> Graph {
     let cash =
         |(at, arm): (usize, &usize)| board.runs(*arm).first().map(|run| ((at + 1) as f64, run.cash.max(0.0)));
     Graph {
-        title: "Final cash of the configurations, the best first".to_owned(),
-        summary: "Final cash by the place of the configuration in the table".to_owned(),
-        across: GraphAxis { label: "place in the table", scale: AxisScale::Whole },
+        title: "Final cash of the configurations, highest first".to_owned(),
+        summary: "Final cash by the configuration's rank in the table".to_owned(),
+        across: GraphAxis { label: "rank in the table", scale: AxisScale::Whole },
         up: GraphAxis { label: "dollars", scale: AxisScale::Linear },
         series: vec![Series {
             name: "final cash".to_owned(),
@@ -236,7 +232,6 @@ fn bars(board: &Board<'_>) -> Graph {
     }
 }
 
-/// Quartiles of the final cash of each configuration, the best first.
 fn spread(board: &Board<'_>) -> Graph {
     let quartiles: Vec<Quartiles> = (board.order.iter())
         .filter_map(|arm| Quartiles::of(&board.results.of(*arm, |run| run.cash)))
@@ -246,10 +241,9 @@ fn spread(board: &Board<'_>) -> Graph {
         points: quartiles.iter().enumerate().map(|(at, own)| (at as f64 + 1.0, of(own))).collect(),
     };
     Graph {
-        title: "Final cash of the configurations, the best first".to_owned(),
-        summary: "Median and quartiles of final cash by the place of the configuration in the table"
-            .to_owned(),
-        across: GraphAxis { label: "place in the table", scale: AxisScale::Whole },
+        title: "Final cash of the configurations, highest first".to_owned(),
+        summary: "Median and quartiles of final cash by the configuration's rank in the table".to_owned(),
+        across: GraphAxis { label: "rank in the table", scale: AxisScale::Whole },
         up: GraphAxis { label: "dollars", scale: AxisScale::Linear },
         series: vec![
             series("upper quartile", |own| own.upper),
@@ -273,7 +267,7 @@ fn notes(grid: &Grid, is_published: bool, board: &Board<'_>) -> Vec<String> {
     }
     if let Some(own) = concordance(&board.by_seed) {
         notes.push(format!(
-            "Rank stability: Kendall's W of the rankings by final cash is {own:.2}: 1 where every seed ranks the configurations alike, about {:.2} where seeds have nothing in common.",
+            "Rank stability: Kendall's W of the rankings by final cash is {own:.2}: 1 if every seed gives the same ranking, about {:.2} if the rankings are unrelated.",
             1.0 / board.by_seed.len() as f64
         ));
     }
@@ -282,7 +276,7 @@ fn notes(grid: &Grid, is_published: bool, board: &Board<'_>) -> Vec<String> {
     }
     if is_published {
         notes.push(format!(
-            "Published for mid / S1 / heavy / $100K at the paper's seed 42: {}. Seeds stand for other luck here than there ({}).",
+            "Published for mid / S1 / heavy / $100K at the paper's seed 42: {}. The same seed gives different random draws here ({}).",
             dollars(published().rule_based_baseline),
             published().source
         ));

@@ -1,4 +1,4 @@
-//! Grids of policies: axes with levels, every combination of which is a policy (docs/laboratory/baseline.md#own-grids).
+//! Policy grids: every combination of the levels of their axes is a policy (docs/laboratory/baseline.md#own-grids).
 
 use serde::Deserialize;
 use toml::{Spanned, Table, Value};
@@ -7,10 +7,10 @@ use crate::exhibit::column_name;
 use crate::policy::{Policy, PolicyError};
 use novamind_world::params::ParameterSource;
 
-/// Most combinations of a grid.
+/// Maximum number of combinations in a grid.
 pub const MOST: usize = 2_000;
 
-/// What stands between the levels of a combination.
+/// Separator between the levels in a label.
 const BETWEEN_LEVELS: &str = " / ";
 
 /// A grid.
@@ -18,25 +18,25 @@ const BETWEEN_LEVELS: &str = " / ";
 pub struct Grid {
     /// Name.
     pub name: String,
-    /// What it varies, and why.
+    /// Description for readers of the file.
     pub description: String,
     /// Names of the axes.
     pub axes: Vec<String>,
-    /// The combinations, the last axis fastest.
+    /// Combinations; the last axis varies fastest.
     pub configurations: Vec<GridPoint>,
 }
 
 /// A combination of levels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GridPoint {
-    /// Names of its levels, one for each axis.
+    /// Names of its levels, one per axis.
     pub levels: Vec<String>,
-    /// What plays.
+    /// Policy that plays.
     pub policy: Policy,
 }
 
 impl GridPoint {
-    /// Its levels in a line.
+    /// Returns the level names joined by the separator.
     pub fn label(&self) -> String {
         self.levels.join(BETWEEN_LEVELS)
     }
@@ -70,7 +70,7 @@ struct LevelEntry {
     call: Vec<Value>,
 }
 
-/// A level with where it stands in its file.
+/// A level and its position in the file.
 struct GridLevel {
     name: String,
     set: Table,
@@ -79,10 +79,10 @@ struct GridLevel {
 }
 
 impl Grid {
-    /// A shipped grid by its name, or the one of a file: anything with a separator, or ending in .toml.
+    /// Returns a bundled grid by name, or reads a file if `name` contains a path separator or ends in .toml.
     ///
     /// # Errors
-    /// There is none, or it is wrong.
+    /// Fails if the grid does not exist or is invalid.
     pub fn find(name: &str) -> Result<Grid, PolicyError> {
         let wrong =
             |problem: String| PolicyError { source: name.to_owned(), line: None, problem, is_unknown: false };
@@ -97,16 +97,16 @@ impl Grid {
             }
             None => {
                 let known: Vec<&str> = novamind_assets::grids().into_iter().map(|(name, _)| name).collect();
-                let problem = format!("there is no such grid; there are {}, and files", known.join(", "));
+                let problem = format!("unknown grid; use {}, or the path of a TOML file", known.join(", "));
                 Err(PolicyError { is_unknown: true, ..wrong(problem) })
             }
         }
     }
 
-    /// Reads a grid.
+    /// Parses a grid.
     ///
     /// # Errors
-    /// Unknown keys, axes without levels, levels of one name, combinations that are no policy, and too many of them.
+    /// Fails on unknown keys, axes without levels, duplicate level names, invalid policies, and too many combinations.
     pub fn parse(source: &ParameterSource) -> Result<Grid, PolicyError> {
         let reader = Reader(source);
         let file: GridFile =
@@ -125,7 +125,7 @@ impl Grid {
                 return Err(reader.at(
                     Some(span),
                     &format!(
-                        "axes have names with letters or digits, each another one and none of {}; a name {LABEL}",
+                        "axis names need letters or digits, must be unique and must not be {}; a name {LABEL}",
                         COLUMNS_OF_TABLES.join(", ")
                     ),
                 ));
@@ -151,10 +151,10 @@ impl Grid {
     }
 }
 
-/// What a name is.
-const LABEL: &str = "is one line of text without \" / \", which stands between the levels of a combination";
+/// Rule for names, for error messages.
+const LABEL: &str = "is one line of text without \" / \", which separates the levels of a combination";
 
-/// Names of columns that the tables have besides the axes.
+/// Column names that axes must not use.
 const COLUMNS_OF_TABLES: [&str; 13] = [
     "seed",
     "cash",
@@ -171,14 +171,14 @@ const COLUMNS_OF_TABLES: [&str; 13] = [
     "equal",
 ];
 
-/// Whether a name can stand in a label of a combination, and be found there again.
+/// Returns whether a name can be part of a label without ambiguity.
 fn is_label(name: &str) -> bool {
     !name.trim().is_empty()
         && !name.contains(BETWEEN_LEVELS)
         && !name.chars().any(|letter| letter.is_control() || ['\u{2028}', '\u{2029}'].contains(&letter))
 }
 
-/// Reads the parts of a file and says where they are wrong.
+/// Reads the parts of a file and locates problems.
 struct Reader<'a>(&'a ParameterSource);
 
 impl Reader<'_> {
@@ -203,7 +203,7 @@ impl Reader<'_> {
             let span = entry.span();
             let LevelEntry { name, set, call } = entry.into_inner();
             if levels.iter().any(|own| own.name == name) {
-                let problem = format!("axis {axis} has two levels of the name {name}");
+                let problem = format!("axis {axis} has two levels named {name}");
                 return Err(self.at(Some(span), &problem));
             }
             if !is_label(&name) {
@@ -212,19 +212,19 @@ impl Reader<'_> {
             levels.push(GridLevel { name, set, calls: call, span });
         }
         if levels.is_empty() {
-            return Err(self.at(Some(span), &format!("axis {axis} has no level")));
+            return Err(self.at(Some(span), &format!("axis {axis} has no levels")));
         }
         Ok(levels)
     }
 
-    /// What all combinations have in common must be right by itself.
+    // The part that all combinations share must be a valid policy too.
     fn check_base(&self, base: Option<&(std::ops::Range<usize>, Table)>) -> Result<(), PolicyError> {
         let Some((span, table)) = base else { return Ok(()) };
         let told = policy_of(table.clone(), "policy").map_err(|problem| (span.clone(), problem));
         told.map(drop).map_err(|(span, problem)| self.located(span, &problem))
     }
 
-    /// The combination of a number, the last axis fastest.
+    /// Returns the combination with a number; the last axis varies fastest.
     fn point(
         &self,
         number: usize,
@@ -247,7 +247,7 @@ impl Reader<'_> {
                     calls.extend(level.calls.iter().cloned());
                 }
             }
-            // Whatever is wrong now came with this level.
+            // The previous levels were valid, so the problem is in this level.
             let checked = policy_of(table.clone(), grid);
             checked.map_err(|problem| {
                 self.located(level.span.clone(), &format!("level {}: {problem}", level.name))
@@ -259,7 +259,7 @@ impl Reader<'_> {
         Ok(GridPoint { levels, policy })
     }
 
-    /// A problem at the key it names in quotes, on the first line from a place on that begins with it; else at the place.
+    /// Locates a problem at the first line from `span` that begins with the key quoted in the message, otherwise at `span`.
     fn located(&self, span: std::ops::Range<usize>, problem: &str) -> PolicyError {
         let mut error = self.at(Some(span.clone()), problem);
         let text = self.0.text.get(span.start..).unwrap_or_default();
@@ -275,7 +275,7 @@ impl Reader<'_> {
     }
 }
 
-/// Lays a table over another, key by key.
+/// Merges a table into another, key by key.
 fn lay_over(below: &mut Table, above: Table) {
     for (key, value) in above {
         match (below.get_mut(&key), value) {
@@ -285,7 +285,6 @@ fn lay_over(below: &mut Table, above: Table) {
     }
 }
 
-/// The policy of a table.
 fn policy_of(mut table: Table, name: &str) -> Result<Policy, String> {
     table.insert("name".to_owned(), Value::String(name.to_owned()));
     let text = toml::to_string(&table).map_err(|error| error.to_string())?;
@@ -313,7 +312,7 @@ mod tests {
             let own = grid.configurations.iter().find(|own| own.label() == label).expect("a configuration");
             own.policy.rule_based.clone()
         };
-        // The published best one is what the routine does by itself.
+        // The published best configuration equals the routine's defaults.
         assert_eq!(of("mid / S1 / heavy / $100K"), Some(crate::policy::RuleBased::default()));
         for (at, own) in grid.configurations.iter().enumerate() {
             let same = |other: &&GridPoint| other.policy.rule_based == own.policy.rule_based;
@@ -353,7 +352,7 @@ mod tests {
             ),
             (format!("name = \"g\"\n{level}[[axis.level]]\nname = \"x\"\n"), Some(6), "two levels"),
             (format!("name = \"g\"\n{level}[[axis.level]]\nname = \"\"\n"), Some(6), "one line of text"),
-            (format!("name = \"g\"\n{level}{level}"), Some(6), "each another one"),
+            (format!("name = \"g\"\n{level}{level}"), Some(6), "must be unique"),
             (format!("name = \"g\"\n[policy.rule_based]\nprice = 1\n{level}"), Some(3), "price"),
             (format!("name = \"g\"\n{level}sets = {{}}\n"), Some(6), "sets"),
         ] {
@@ -361,7 +360,7 @@ mod tests {
             assert_eq!(error.line, line, "{text}: {error}");
             assert!(error.problem.contains(part), "{text}: {error}");
         }
-        let missing = Grid::find("nothing").expect_err("no such grid");
+        let missing = Grid::find("nothing").expect_err("unknown grid");
         assert!(missing.problem.contains("paper"), "{missing}");
     }
 }

@@ -1,4 +1,4 @@
-//! The paper's rule-based configurations, and grids of one's own (docs/laboratory/baseline.md).
+//! The paper's rule-based configurations, and custom grids (docs/laboratory/baseline.md).
 
 mod exhibit;
 mod grid;
@@ -10,5 +10,5 @@ pub use exhibit::baseline_exhibit;
 pub use grid::{Grid, GridPoint};
 pub use shared_play::{is_shared, leaders};
 
-/// Name of the shipped grid of the paper.
+/// Name of the bundled grid with the paper's configurations.
 pub const PAPER: &str = "paper";

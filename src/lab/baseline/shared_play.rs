@@ -1,11 +1,11 @@
-//! Configurations that differ in their cash floor only play alike until cash comes between their floors: such runs are played
+//! Configurations that differ only in their cash floor play alike until cash falls between the floors. Such runs are played
 //! once.
 
 use super::grid::GridPoint;
 use crate::experiment::RunResult;
 use crate::policy::{Policy, RuleBased};
 
-/// For each configuration, the one with the lowest floor that is like it in everything else.
+/// Returns for each configuration the one with the lowest floor among those that are otherwise equal.
 pub fn leaders(points: &[GridPoint]) -> Vec<usize> {
     let floor = |at: usize| floor_of(&points[at].policy);
     let leader = |at: usize| {
@@ -15,7 +15,7 @@ pub fn leaders(points: &[GridPoint]) -> Vec<usize> {
     (0..points.len()).map(leader).collect()
 }
 
-/// Cash floor; without a routine nothing reads it.
+/// Returns the cash floor of the routine, or negative infinity without a routine.
 fn floor_of(policy: &Policy) -> f64 {
     policy.rule_based.as_ref().map_or(f64::NEG_INFINITY, |rules| rules.cash_floor)
 }
@@ -27,8 +27,8 @@ fn are_alike(one: &Policy, other: &Policy) -> bool {
         && (&one.start, &one.calls, &one.enterprise) == (&other.start, &other.calls, &other.enterprise)
 }
 
-/// Whether a run of the leader is also that of a configuration with another floor: on no decision day was cash above the
-/// one and not above the other.
+/// Returns whether a run of the leader is also valid for a configuration with another floor: on no decision day was cash above
+/// one floor and not above the other.
 pub fn is_shared(leader: &Policy, own: &Policy, start_cash: f64, run: &RunResult) -> bool {
     let (low, high) = (floor_of(leader), floor_of(own));
     let decided = run.weeks.iter().take(run.weeks.len().saturating_sub(1)).map(|week| week.cash);

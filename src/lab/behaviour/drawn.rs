@@ -1,14 +1,14 @@
-//! Graphs of how runs were played: small multiples of cash, customers by group.
+//! Graphs of player behavior: small multiples of cash, customers by group.
 
 use std::collections::BTreeMap;
 
 use super::{ObservedRun, who};
 use crate::exhibit::{AxisScale, Graph, GraphAxis, GraphForm, Series};
 
-/// Most runs whose customers are drawn: each has a graph of its own.
+/// Maximum number of runs with a customer graph; each run has its own graph.
 pub(super) const MOST_WITH_CUSTOMERS: usize = 4;
 
-/// For each participant the cash of their runs; for each of a few runs its customers by group.
+/// Returns a cash graph per participant and, for the first few runs, a graph of customers by group.
 pub(super) fn graphs(runs: &[ObservedRun]) -> Vec<Graph> {
     let mut players: BTreeMap<Option<String>, Vec<&ObservedRun>> = BTreeMap::new();
     runs.iter().for_each(|run| players.entry(who(run)).or_default().push(run));

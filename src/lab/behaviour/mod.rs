@@ -1,6 +1,6 @@
-//! How runs were played: the behaviour measures of the paper over one or many runs (docs/laboratory/behaviour.md).
+//! The paper's behavior measures for one or more runs (docs/laboratory/behaviour.md).
 //!
-//! Nothing is measured here: figures are those of `report::measures`, by the names under which `lab compare` tells them.
+//! The figures come from `report::measures` and have the same names as in `lab compare`.
 
 mod drawn;
 
@@ -16,31 +16,31 @@ use novamind_report::plot::level;
 use novamind_report::ranking::published;
 use novamind_session::Session;
 
-/// A run with what its behaviour is told by.
+/// A run and the data of its behavior tables.
 pub struct ObservedRun {
-    /// How it was played.
+    /// Report on the run.
     pub book: Logbook,
-    /// Its groups by week.
+    /// Groups by week.
     pub groups: Vec<GroupBook>,
     /// Cash at the end of each day, day 0 first.
     pub cash_by_day: Vec<f64>,
-    /// The notes each time they were kept.
+    /// Every saved version of the notes.
     pub notes: Vec<KeptNote>,
 }
 
-/// The notes as they were kept once.
+/// One saved version of the notes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KeptNote {
     /// Decision day.
     pub day: u32,
-    /// Words.
+    /// Number of words.
     pub wording: Wording,
-    /// The sentences that plan.
+    /// Sentences that contain a planning word.
     pub plans: Vec<String>,
 }
 
 impl ObservedRun {
-    /// A run from its lines and as they make it. Asks the database.
+    /// Reads a run's behavior from its record and its database.
     pub fn of(session: &Session, lines: &[Line]) -> ObservedRun {
         ObservedRun {
             book: Logbook::of(session, lines, &[]),
@@ -51,7 +51,7 @@ impl ObservedRun {
     }
 }
 
-/// Every version of the notes whose text the lines hold.
+/// Returns every version of the notes whose text is recorded.
 fn notes_of(lines: &[Line]) -> Vec<KeptNote> {
     let kept = lines.iter().filter_map(|line| match &line.record {
         Record::Note(note) => Some((line.day, note.text.as_deref()?)),
@@ -61,7 +61,7 @@ fn notes_of(lines: &[Line]) -> Vec<KeptNote> {
         .collect()
 }
 
-/// Figures of a run, with their headings; the names are those of `lab compare`.
+/// Figures of a run (named as in `lab compare`) and their column headings.
 const FIGURES: [(&str, &str, &str); 10] = [
     ("survival", "", "life, days"),
     ("ad spend on the truly best channel", "", "ads on best channel"),
@@ -75,23 +75,22 @@ const FIGURES: [(&str, &str, &str); 10] = [
     ("\"if\" in notes", "", "\"if\", notes"),
 ];
 
-/// Most tools that are told.
 const MOST_TOOLS: usize = 10;
 
-/// How runs were played, as tables and graphs.
+/// Returns the behavior tables and graphs of some runs.
 pub fn exhibit_of(runs: &[ObservedRun]) -> Exhibit {
-    let mut exhibit = Exhibit::of("How the runs were played", figures(runs));
+    let mut exhibit = Exhibit::of("Player behavior", figures(runs));
     exhibit.tables.extend([tools(runs), customers(runs), cash_range(runs), notes(runs), cash(runs)]);
     exhibit.tables.retain(|table| !table.rows.is_empty());
     exhibit.graphs = drawn::graphs(runs);
     if runs.len() > drawn::MOST_WITH_CUSTOMERS {
         exhibit.notes.push(format!(
-            "Graphs of customers by group are drawn of up to {} runs.",
+            "Graphs of customers by group are drawn for up to {} runs.",
             drawn::MOST_WITH_CUSTOMERS
         ));
     }
     exhibit.notes.push(format!(
-        "Ads on the best channel are by chance {:.0}%: there are five channels. The truly best one is known of runs that are \
+        "Random allocation puts {:.0}% of ads on the best of the five channels. The truly best channel is shown for runs that are \
          over; best tried compares those that were paid for.",
         published().best_channel_random_share * 100.0
     ));
@@ -99,12 +98,12 @@ pub fn exhibit_of(runs: &[ObservedRun]) -> Exhibit {
     exhibit
 }
 
-/// A row for each run, and the mean and the spread of several.
+/// Returns one row per run, plus mean and standard deviation for several runs.
 fn figures(runs: &[ObservedRun]) -> Tabulation {
     let figures: Vec<(&ComparedFigure, &str)> =
         FIGURES.iter().filter_map(|(name, of, heading)| Some((figure_of(name, of)?, *heading))).collect();
     let column = |(figure, heading): &(&ComparedFigure, &str)| {
-        // A mean of counts or days is no whole number.
+        // A mean of counts or days is not a whole number.
         let measure = match measure_of(figure.unit()) {
             Measure::Count | Measure::Days => Measure::Number(1),
             other => other,
@@ -141,7 +140,6 @@ fn who(run: &ObservedRun) -> Option<String> {
     run.book.player()
 }
 
-/// The ten tools that were used most, over all runs.
 fn tools(runs: &[ObservedRun]) -> Tabulation {
     let mut names: Vec<&str> = runs
         .iter()
@@ -181,13 +179,12 @@ fn tools(runs: &[ObservedRun]) -> Tabulation {
         Column::numbers("sd_a_week", "± sd", Measure::Number(2)),
     ];
     let rows = told.iter().take(MOST_TOOLS).map(row).collect();
-    Tabulation { rows, ..Tabulation::new("tools", "Tools, the most used first", columns) }
+    Tabulation { rows, ..Tabulation::new("tools", "Most-used tools", columns) }
 }
 
-/// Shares of a run at which customers are told.
+/// Shares of a run at which customers are listed.
 const MOMENTS: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
 
-/// Customers of each group at five moments of each run.
 fn customers(runs: &[ObservedRun]) -> Tabulation {
     let mut columns = vec![Column::words("run", "run"), Column::words("group", "group")];
     columns.extend(MOMENTS.map(|share| {
@@ -204,14 +201,14 @@ fn customers(runs: &[ObservedRun]) -> Tabulation {
         cells
     };
     let rows = runs.iter().flat_map(|run| run.groups.iter().map(move |group| row(run, group))).collect();
-    let caption = "Active subscriptions by group, after shares of the weeks that ran";
+    let caption = "Active subscriptions by group, after percentages of the run's weeks";
     Tabulation { rows, ..Tabulation::new("customers", caption, columns) }
 }
 
-/// Points of a small curve.
+/// Number of points in a small curve.
 const POINTS: usize = 36;
 
-/// Lowest, highest and last cash, with the curves on one scale.
+/// Returns the lowest, highest and final cash of each run, with curves on one scale.
 fn cash_range(runs: &[ObservedRun]) -> Tabulation {
     let all = || runs.iter().flat_map(|run| run.cash_by_day.iter().copied());
     let (least, most) = (all().fold(0.0, f64::min), all().fold(1.0, f64::max));
@@ -248,7 +245,6 @@ fn cash_range(runs: &[ObservedRun]) -> Tabulation {
     Tabulation { rows, ..Tabulation::new("cash_range", "Cash, all curves on one scale", columns) }
 }
 
-/// Cash at the end of every day.
 fn cash(runs: &[ObservedRun]) -> Tabulation {
     let columns = vec![
         Column::words("run", "run"),
@@ -272,21 +268,19 @@ fn cash(runs: &[ObservedRun]) -> Tabulation {
     Tabulation { rows, is_for_programs: true, ..Tabulation::new("cash", "Cash by day", columns) }
 }
 
-/// The runs, those of a participant one after the other.
 fn by_participant(runs: &[ObservedRun]) -> Vec<&ObservedRun> {
     let mut ordered: Vec<&ObservedRun> = runs.iter().collect();
     ordered.sort_by_key(|run| who(run));
     ordered
 }
 
-/// What the notes say, each time they were kept.
 fn notes(runs: &[ObservedRun]) -> Tabulation {
     let columns = vec![
         Column::words("run", "run"),
         Column::numbers("day", "day", Measure::Count),
         Column::numbers("words", "words", Measure::Count),
         Column::numbers("ifs", "\"if\"", Measure::Count),
-        Column::words("plans", "sentences that plan"),
+        Column::words("plans", "planning sentences"),
     ];
     let row = |run: &ObservedRun, note: &KeptNote| {
         vec![
@@ -298,10 +292,10 @@ fn notes(runs: &[ObservedRun]) -> Tabulation {
         ]
     };
     let rows = runs.iter().flat_map(|run| run.notes.iter().map(move |note| row(run, note))).collect();
-    Tabulation { rows, ..Tabulation::new("notes", "The notes, each time they were kept", columns) }
+    Tabulation { rows, ..Tabulation::new("notes", "Versions of the notes", columns) }
 }
 
-/// Forecast error of the first weeks and life of each run that has both.
+/// Returns the forecast error of the first weeks and the survival of each run that has both.
 fn errors_and_lives(runs: &[ObservedRun]) -> Vec<(f64, f64)> {
     let of = |name, horizon, run: &ObservedRun| figure_of(name, horizon)?.value(&run.book);
     runs.iter()
@@ -313,11 +307,10 @@ fn errors_and_lives(runs: &[ObservedRun]) -> Vec<(f64, f64)> {
 
 fn correlation_in_words(runs: &[ObservedRun]) -> String {
     let pairs = errors_and_lives(runs);
-    let told =
-        "The error of 4-week forecasts filed before the first four weeks, against the life of the company";
+    let told = "Error of 4-week forecasts filed before the first four weeks, against survival";
     match rank_correlation(&pairs) {
         Some(value) => format!("{told}: rank correlation {value:.2} over {} runs.", pairs.len()),
-        None => format!("{told}: no correlation, for it needs three runs that differ in both."),
+        None => format!("{told}: no correlation. It needs at least three runs that differ in both."),
     }
 }
 
@@ -353,14 +346,14 @@ mod tests {
         };
         let survival = |table: &Tabulation| [0, 1, 2, 3].map(|row| of(table, row, "survival"));
         let open = survival(&measures(&runs));
-        assert!(open.iter().all(|own| *own == Datum::Missing), "nobody knows how long an open run lives");
+        assert!(open.iter().all(|own| *own == Datum::Missing), "survival of an open run is unknown");
         runs.iter_mut().for_each(|run| run.book.ended = Some(Ended::Horizon));
         let table = measures(&runs);
         let spread = Sample::of(&[14.0, 7.0]).std;
         assert_eq!(survival(&table), [14.0, 7.0, 10.5, spread].map(Datum::Number));
         assert_eq!(of(&table, 0, "if_in_rationales"), Datum::Number(1.0));
         assert_eq!(of(&table, 0, "if_in_notes"), Datum::Number(0.0));
-        assert_eq!(table.as_csv().len(), 1 + 2, "rows of runs alone");
+        assert_eq!(table.as_csv().len(), 1 + 2, "only rows of runs");
         let alone = exhibit_of(&runs[..1]);
         let alone = alone.table("measures").expect("measures");
         assert_eq!((alone.rows.len(), alone.summary.len()), (1, 0));
@@ -369,7 +362,7 @@ mod tests {
     #[test]
     fn tools_customers_cash_and_notes_have_tables() {
         let mut runs = observed();
-        assert!(exhibit_of(&runs).table("customers").is_none(), "nobody came");
+        assert!(exhibit_of(&runs).table("customers").is_none(), "there were no customers");
         runs[0].groups = Books::of(&test_kit::played(5)).groups;
         let exhibit = exhibit_of(&runs);
         let rows = |name: &str| exhibit.table(name).expect(name).as_csv();

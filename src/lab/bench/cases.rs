@@ -1,4 +1,4 @@
-//! The rows of the speed table and how each is measured.
+//! The rows of the speed table and their measurements.
 
 use std::time::Instant;
 
@@ -10,7 +10,7 @@ use novamind_base::statistics::median;
 use novamind_record::folder::runs::find_run;
 use novamind_session::{Access, Session};
 
-/// What is measured of the simulator.
+/// Cases of the simulator.
 pub const CASES: &[Case] = &[
     Case {
         name: "day",
@@ -118,7 +118,7 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-/// Milliseconds a day would take with this many subscribers.
+/// Returns the milliseconds per day, scaled to this many subscribers.
 fn day_at(subscribers: f64, laps: &[Lap]) -> Vec<f64> {
     laps.iter().map(|lap| lap.per_subscriber_day() * subscribers * 1e3).collect()
 }
@@ -127,22 +127,22 @@ fn laps(company: &mut Company, count: usize) -> Result<Vec<Lap>, BenchError> {
     (0..count).map(|_| company.week()).collect()
 }
 
-/// A company with about 165,000 subscribers: it grows while it is measured.
+/// Returns a company with about 165,000 subscribers. It grows during the measurement.
 fn at_165_000(keep: Keep, bench: &Bench) -> Result<Company, BenchError> {
     Company::grown(150_000, keep, bench)
 }
 
-/// Leaves a run with about 165,000 subscribers in the scratch folder; returns its id.
+/// Saves a run with about 165,000 subscribers in the scratch folder and returns its ID.
 ///
 /// # Errors
-/// It cannot be played or kept.
+/// Fails if the run cannot be played or saved.
 pub fn keep_a_large_company(bench: &Bench) -> Result<String, BenchError> {
     let mut company = at_165_000(Keep::Disk, bench)?;
     company.session.save()?;
     Ok(company.session.manifest().id.clone())
 }
 
-/// A company of a large market when it has about a million subscribers.
+/// Returns a company with about a million subscribers in the large market.
 fn at_a_million(keep: Keep, bench: &Bench) -> Result<Company, BenchError> {
     let mut company = Company::found(Market::Large, keep, bench)?;
     company.grow_to(1_000_000)?;
@@ -160,7 +160,7 @@ fn million(bench: &Bench) -> Result<Samples, BenchError> {
     let mut company = at_a_million(Keep::Disk, bench)?;
     let on_disk = laps(&mut company, bench.repetitions)?;
     company.session.save()?;
-    // Before the second company needs memory of its own.
+    // Read the peak before the second company allocates memory.
     let memory = peak_memory().into_iter().collect();
     drop(company);
     let in_memory = laps(&mut at_a_million(Keep::Memory, bench)?, bench.repetitions)?;
@@ -172,7 +172,7 @@ fn play_all(projection: bool, bench: &Bench) -> Result<(f64, String), BenchError
     let policy = Policy::find(POLICY, &bench.configuration)?;
     let spec = RunSpec { save: Some(bench.scratch.clone()), projection, ..RunSpec::of_seed(SEED) };
     let outcome = play(&policy, &spec, &bench.configuration, &mut Collector::idle())?;
-    let run = outcome.run.ok_or_else(|| BenchError("the run was not kept".to_owned()))?;
+    let run = outcome.run.ok_or_else(|| BenchError("the run was not saved".to_owned()))?;
     Ok((outcome.seconds, run))
 }
 
@@ -223,20 +223,20 @@ fn week(bench: &Bench) -> Result<Samples, BenchError> {
     Ok(vec![dashboard, query])
 }
 
-/// Numbers of subscribers at which the cost is compared, in the company's own market.
+/// Subscriber counts at which costs are compared, in the default market.
 const SIZES: [u32; 3] = [10_000, 40_000, 165_000];
-/// Weeks of each company that are measured at most: after as many it has left its size behind.
+/// Maximum weeks measured per company: after more it has outgrown its size.
 const WEEKS_OF_A_SIZE: usize = 5;
 
-/// On one thread: what a second one is worth depends on how soon the system wakes it, and that is the same for a company
+/// Uses one thread: the gain of a second one depends on wake-up latency, which is the same for a company
 /// of any size.
 fn scaling(bench: &Bench) -> Result<Samples, BenchError> {
     rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(|| costs_by_size(bench))
 }
 
-/// The companies take turns, so that a slow minute of the machine strikes all alike.
+/// Companies take turns, so that a slow period of the machine affects all of them equally.
 fn costs_by_size(bench: &Bench) -> Result<Samples, BenchError> {
-    // They grow while they are measured, so they begin a little below.
+    // Companies grow during the measurement, so they start slightly smaller.
     let own = SIZES.iter().map(|size| Company::grown(size / 10 * 9, Keep::Memory, bench));
     let mut companies = own.collect::<Result<Vec<Company>, BenchError>>()?;
     companies.push(at_a_million(Keep::Memory, bench)?);

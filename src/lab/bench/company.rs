@@ -1,4 +1,4 @@
-//! The company that is measured: the policy P1a, played up to a number of subscribers.
+//! The measured company: policy P1a, played up to a number of subscribers.
 
 use std::time::Instant;
 
@@ -12,35 +12,35 @@ use novamind_session::{NewRun, Session, Storage};
 pub const POLICY: &str = "P1a";
 /// Seed of all figures.
 pub const SEED: u64 = 42;
-/// A billing period and a few days: after these weeks everybody has been billed.
+/// Weeks after which every subscriber was billed: a billing period and a few days.
 const SETTLING_WEEKS: u32 = 5;
 
-/// How the run is kept.
+/// Storage of the run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Keep {
     /// In memory, without a database.
     Memory,
-    /// On the disk with the database in the background, as a person plays.
+    /// On disk, with the database updated in the background, as in interactive play.
     Disk,
 }
 
-/// The market the company grows in.
+/// Market of the company.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Market {
-    /// As it is.
+    /// The default market.
     Own,
-    /// One that a million subscribers fit into.
+    /// A larger market with room for a million subscribers.
     Large,
 }
 
-/// A company with a crowd of subscribers.
+/// A company with many subscribers.
 pub struct Company {
     policy: Policy,
     /// Its run.
     pub session: Session,
 }
 
-/// A week that was measured.
+/// Measurement of one week.
 #[derive(Debug, Clone, Copy)]
 pub struct Lap {
     /// Seconds from the key to the dashboard.
@@ -50,14 +50,14 @@ pub struct Lap {
 }
 
 impl Lap {
-    /// Seconds for one subscriber and day.
+    /// Returns the seconds per subscriber and day.
     pub fn per_subscriber_day(&self) -> f64 {
         self.seconds / 7.0 / self.subscribers
     }
 }
 
 impl Company {
-    /// A company on day 0.
+    /// Creates a company on day 0.
     pub fn found(market: Market, keep: Keep, bench: &Bench) -> Result<Company, BenchError> {
         let policy = Policy::find(POLICY, &bench.configuration)?;
         let mut spec = RunSpec::of_seed(SEED);
@@ -75,19 +75,19 @@ impl Company {
         Ok(Company { session: Session::create(new, &bench.configuration)?, policy })
     }
 
-    /// A company of its own market as soon as it has this many subscribers.
+    /// Returns a company in the default market once it has this many subscribers.
     pub fn grown(subscribers: u32, keep: Keep, bench: &Bench) -> Result<Company, BenchError> {
         let mut company = Company::found(Market::Own, keep, bench)?;
         company.grow_to(subscribers)?;
         Ok(company)
     }
 
-    /// Active subscribers now.
+    /// Returns the active subscribers.
     pub fn subscribers(&self) -> u32 {
         self.session.weeks().last().map_or(0, |week| week.individual_subscribers)
     }
 
-    /// Decides and lets a week pass; only the passing is measured.
+    /// Makes the decisions of a week and simulates it; only the simulation is measured.
     pub fn week(&mut self) -> Result<Lap, BenchError> {
         decide(&self.policy, SEED, &mut self.session)?;
         self.session.wait_for_database()?;
@@ -99,18 +99,18 @@ impl Company {
         Ok(Lap { seconds, subscribers: f64::from(before + self.subscribers()) / 2.0 })
     }
 
-    /// Plays until there are this many subscribers.
+    /// Plays until the company has this many subscribers.
     pub fn grow_to(&mut self, subscribers: u32) -> Result<(), BenchError> {
         while self.subscribers() < subscribers {
             if self.session.ended().is_some() {
-                return Err(BenchError(format!("the company never had {subscribers} subscribers")));
+                return Err(BenchError(format!("the company never reached {subscribers} subscribers")));
             }
             self.week()?;
         }
         Ok(())
     }
 
-    /// Plays until everybody has been billed once.
+    /// Plays until every subscriber was billed once.
     pub fn settle(&mut self) -> Result<(), BenchError> {
         for _ in 0..SETTLING_WEEKS {
             self.week()?;

@@ -1,21 +1,20 @@
-//! What the machine tells: a fixed piece of work, memory, sizes of folders.
+//! Machine figures: calibration time, memory, folder sizes.
 
 use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
 
-/// Steps of the calibration loop.
 const STEPS: u64 = 60_000_000;
 
-/// Seconds a fixed piece of whole-number and floating-point work takes on one processor, so that figures of
-/// different machines compare.
+/// Returns the seconds that a fixed amount of integer and floating-point work takes on one processor, so that figures of
+/// different machines can be compared.
 pub fn calibrate() -> f64 {
     let started = Instant::now();
     black_box(fixed_work(black_box(STEPS)));
     started.elapsed().as_secs_f64()
 }
 
-/// A chain of shifts, a multiplication, a division and a root a step: each waits for the one before, as the
+/// Each step depends on the previous one (shifts, a multiplication, a division and a root), as the
 /// terms of a formula do.
 fn fixed_work(steps: u64) -> f64 {
     let (mut word, mut value) = (0x9e37_79b9_7f4a_7c15_u64, 1.0_f64);
@@ -29,7 +28,7 @@ fn fixed_work(steps: u64) -> f64 {
     value
 }
 
-/// Most memory this process ever held, in millions of bytes; none where the system does not tell.
+/// Returns the peak memory of this process in millions of bytes, or `None` if the system does not report it.
 pub fn peak_memory() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
@@ -37,7 +36,7 @@ pub fn peak_memory() -> Option<f64> {
     Some(kibibytes * 1024.0 / 1e6)
 }
 
-/// Size of the files in a folder, in millions of bytes.
+/// Returns the size of the files in a folder in millions of bytes.
 pub fn folder_size(folder: &Path) -> std::io::Result<f64> {
     let mut bytes = 0;
     for entry in std::fs::read_dir(folder)? {

@@ -1,65 +1,65 @@
-//! How fast this machine simulates, a row for each thing that people or programs wait for.
+//! Speed of simulation on this machine: one row per operation that users or programs wait for.
 //!
-//! A [`Case`] is something that is measured in a process of its own, so that its peak memory is its own too; it
+//! A [`Case`] is measured in a separate process, so that its peak memory is measured too; it
 //! yields samples of one or more [`BenchFigure`]s, and a figure's value is their median. New figures, for instance
-//! those of the console, are further cases: [`CASES`] are those of the simulator.
+//! those of the console, are additional cases; [`CASES`] covers the simulator.
 //!
 //! **Where the subscribers come from.** All cases play the policy P1a (the paper's best configuration) with seed
 //! 42, the same company that the 500-day figures play. It passes 10,000, 40,000 and 165,000 subscribers by
-//! itself; so a day is measured with the arrivals, bills, switches, cancellations and support issues that such
-//! a company really has, and not with a crowd made up for the purpose. A million does not fit into its market,
+//! itself, so a day is measured with the leads, bills, switches, cancellations and support issues that such
+//! a company really has, not with synthetic subscribers. A million does not fit into its market,
 //! so there the market is larger: with `leads.saturation_base` = b the room left is b - (N / cap)², which fills up
 //! where (N / cap)² approaches b. The company is rich there, because it grows faster than it could pay for, and
-//! it is measured only when all its subscribers have been billed once.
+//! it is measured only after all its subscribers were billed once.
 //!
 //! **What a sample is.** Days are measured by the week, as they are played: the seven days, the figures, the
 //! state hash and the lines of the trajectory, divided by seven, and scaled from the subscribers there are to
 //! the number the figure names (they differ by less than a fifth). The policy's own decisions are not counted.
-//! Where the projection works in the background, it is waited for between the weeks, as a person who reads the
-//! dashboard does. The cost per subscriber is compared on one thread: what a second one is worth depends on how soon
-//! the system wakes it, and that takes as long for a small company as for a large one.
+//! If the projection runs in the background, the case waits for it between weeks, as a user who reads the
+//! dashboard does. The cost per subscriber is compared on one thread: the gain of a second one depends on how soon
+//! the system wakes it, which takes equally long for small and large companies.
 //!
 //! # Where the time goes
 //!
-//! Measured with a clock between the steps of a day on one thread of an EPYC, P1a (seed 42) at 172,000 subscribers:
+//! Measured between the steps of a day on one thread of an EPYC, P1a (seed 42) at 172,000 subscribers:
 //!
-//! | share | what |
+//! | share | step |
 //! |---|---|
-//! | 6 % | usage of everybody |
-//! | 22 % | the first round among subscribers: who calls for help (a third of it draws a word for every place of a block), satisfaction, and on every seventh day how loud everybody is |
-//! | 1 % | which issues are solved |
-//! | 18 % | the second round: issues are settled, those who are due decide, and pay if they stay |
-//! | 19 % | 3,900 new leads: traits, decision, their rows |
-//! | 5 % | bills of newcomers and companies |
+//! | 6 % | usage of all subscribers |
+//! | 22 % | first pass over subscribers: support calls (a third of it draws a word for every slot of a block), satisfaction, and every seventh day posting weights |
+//! | 1 % | resolved issues |
+//! | 18 % | second pass: settle issues, renewal decisions of due subscribers, their payments |
+//! | 19 % | 3,900 new leads: traits, decisions, rows |
+//! | 5 % | bills of new subscribers and enterprises |
 //! | 1 % | closing figures |
-//! | 10 % | what follows from a day: the hash of its facts, words of posts |
-//! | 15 % | the hash of the state, once a week |
+//! | 10 % | after a day: hash of its facts, texts of posts |
+//! | 15 % | state hash, once a week |
 //! | 3 % | the rest |
 //!
-//! On two threads all of it but about a twentieth is shared out. What helped, bit for bit as before: rounds in which
+//! On two threads about 95 % of it runs in parallel. These changes helped and kept results bit-identical: passes in which
 //! a block goes through several mechanisms while it is in the cache, instead of a pass each; pieces of work as small
-//! as two blocks, because those who came on one day are due on one day, side by side; the hash of the state as a
-//! tree, each thread hashing the bytes it has collected; what follows from a day beside the next day, and what follows
-//! from the last one beside the hash of the state; days filled into facts that the writer of the database has done
-//! with, instead of fresh memory; loops over some rows at a time without a branch and without a look at anything
-//! shared, of which the compiler makes vector instructions: what was in the way was a parameter read only where a
-//! condition holds, through a reference that the compiler does not know to be good.
+//! as two blocks, because subscribers of one day are due on one day and adjacent; the state hash as a
+//! tree, with each thread hashing the bytes it collected; the work after a day in parallel with the next day, and after
+//! the last day in parallel with the state hash; reuse of fact buffers that the database writer has finished
+//! with; loops over several rows at a time without branches and without access to
+//! shared data, which the compiler vectorizes. The obstacle was a parameter read only if a
+//! condition is true, through a reference that the compiler cannot prove dereferenceable.
 //!
-//! What did not: asking for the columns of a block before they are needed; other purge delays and page sizes of the
-//! allocator; a second thread kept awake between the steps of a day, where two processors share a core; the weights of
-//! posts without a branch; pieces of work of one block.
+//! These did not help: prefetching the columns of a block; other purge delays and page sizes of the
+//! allocator; keeping a second thread awake between the steps of a day on two processors of one core; post weights
+//! without a branch; work units of one block.
 //!
-//! The first days of a week with a database are slower than those in memory because both threads have slept: a
+//! The first days of a week with a database are slower than those in memory because both threads slept: a
 //! company in memory that sleeps a second before each week is as slow.
 //!
-//! **The floor.** A day reads and writes about 104 bytes of each subscriber's columns (usage 21, calls and satisfaction
+//! **Lower bound.** A day reads and writes about 104 bytes of each subscriber's columns (usage 21, calls and satisfaction
 //! 65, closing 8, billing days 2, the hash of the facts 8), and a seventh of the 171 bytes of a row for the hash of the
 //! state: 128 bytes. At the 7 GB/s that one thread of this machine copies, a day at 165,000 is at least 3 ms of one
-//! thread, at a million 18 ms. What is above it is arithmetic and the people who come, pay and leave, not passes over
+//! thread, at a million 18 ms. The rest is arithmetic and sign-ups, payments and cancellations, not passes over
 //! columns.
 //!
-//! **Streams.** A stream is opened for every lead and every bill. That took 180 ns (BLAKE3, then ChaCha8, both a chain
-//! of waiting steps); eight at a time take 50 ns each for one draw (`world::random`).
+//! **Streams.** Every lead and every bill opens a stream. That took 180 ns (BLAKE3, then ChaCha8, both a chain
+//! of dependent steps); eight at a time take 50 ns each for one draw (`world::random`).
 
 mod cases;
 mod company;
@@ -81,7 +81,7 @@ pub use cases::{CASES, keep_a_large_company};
 pub use machine::calibrate;
 pub use queries::company_to_ask;
 
-/// What a figure counts.
+/// Unit of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Unit {
@@ -89,7 +89,7 @@ pub enum Unit {
     Milliseconds,
     /// Seconds.
     Seconds,
-    /// Nanoseconds for one subscriber and day.
+    /// Nanoseconds per subscriber and day.
     NanosecondsPerSubscriberDay,
     /// Millions of bytes.
     Megabytes,
@@ -98,7 +98,7 @@ pub enum Unit {
 }
 
 impl Unit {
-    /// Sign behind a number.
+    /// Returns the unit symbol.
     pub fn sign(self) -> &'static str {
         match self {
             Unit::Milliseconds => "ms",
@@ -109,7 +109,7 @@ impl Unit {
         }
     }
 
-    /// Seconds that one of it is; none for what is no time.
+    /// Returns the unit's length in seconds, or `None` if it is not a time.
     pub fn seconds(self) -> Option<f64> {
         match self {
             Unit::Milliseconds => Some(1e-3),
@@ -123,29 +123,29 @@ impl Unit {
 /// One row of the speed table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BenchFigure {
-    /// What is measured, as people read it.
+    /// Name of the measurement.
     pub name: &'static str,
     /// Unit of the numbers.
     pub unit: Unit,
-    /// Not more than this.
+    /// Maximum allowed value.
     pub target: Option<f64>,
-    /// Better not more than this.
+    /// Maximum desired value.
     pub stretch: Option<f64>,
 }
 
-/// How a measured value stands to its target.
+/// A measured value compared with its target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// As good as was hoped for.
+    /// Within the stretch target.
     WithinStretch,
-    /// As good as was asked for.
+    /// Within the target.
     WithinTarget,
-    /// Not good enough.
+    /// Above the target.
     Over,
-    /// No target was set.
+    /// The figure has no target.
     NoTarget,
-    /// This system does not tell.
+    /// The system does not report it.
     NotMeasured,
 }
 
@@ -162,17 +162,17 @@ impl fmt::Display for Verdict {
 }
 
 impl BenchFigure {
-    /// One with a target.
+    /// Returns a figure with a target.
     pub const fn aimed(name: &'static str, unit: Unit, target: f64, stretch: Option<f64>) -> BenchFigure {
         BenchFigure { name, unit, target: Some(target), stretch }
     }
 
-    /// One that is only shown.
+    /// Returns a figure without a target.
     pub const fn shown(name: &'static str, unit: Unit) -> BenchFigure {
         BenchFigure { name, unit, target: None, stretch: None }
     }
 
-    /// How a value stands to the target.
+    /// Compares a value with the target.
     pub fn verdict(&self, value: Option<f64>) -> Verdict {
         match (value, self.target, self.stretch) {
             (None, ..) => Verdict::NotMeasured,
@@ -184,39 +184,39 @@ impl BenchFigure {
     }
 }
 
-/// Samples of the figures of a case, in their order; a figure this system does not tell has none.
+/// Samples of a case's figures in order; empty if the system does not report a figure.
 pub type Samples = Vec<Vec<f64>>;
 
-/// Something that is measured in a process of its own.
+/// A measurement that runs in a separate process.
 pub struct Case {
     /// Name for `--only`.
     pub name: &'static str,
-    /// What it yields.
+    /// Figures that it measures.
     pub figures: &'static [BenchFigure],
-    /// Whether every repetition needs a fresh process; otherwise one process repeats.
+    /// Whether every repetition needs a new process; otherwise one process repeats.
     pub fresh: bool,
-    /// Whether it takes so long that a quick look leaves it out.
+    /// Whether a quick run skips it because it takes long.
     pub long: bool,
-    /// Measures.
+    /// Function that measures.
     pub measure: fn(&Bench) -> Result<Samples, BenchError>,
 }
 
-/// What a measurement needs to know.
+/// Options of a measurement.
 pub struct Bench {
-    /// How often to measure.
+    /// Number of repetitions.
     pub repetitions: usize,
-    /// Folder for runs; everything in it may be removed.
+    /// Scratch folder for runs; its contents can be deleted.
     pub scratch: PathBuf,
-    /// Configuration to play with.
+    /// Configuration of the runs.
     pub configuration: Configuration,
 }
 
-/// Why something could not be measured.
+/// Reason why a measurement failed.
 #[derive(Debug)]
 pub struct BenchError(String);
 
 impl BenchError {
-    /// An error in words.
+    /// Creates an error from a message.
     pub fn new(words: String) -> BenchError {
         BenchError(words)
     }

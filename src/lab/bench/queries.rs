@@ -1,4 +1,4 @@
-//! Questions to the database of a large company, asked as a person asks them.
+//! Speed of interactive queries on the database of a large company.
 
 use std::time::Instant;
 
@@ -12,16 +12,16 @@ use novamind_record::trajectory::record::Via;
 use novamind_session::Session;
 use novamind_tools::ToolId;
 
-/// About the most subscribers that P1a ever has.
+/// Approximate peak subscribers of P1a.
 const SUBSCRIBERS: u32 = 190_000;
 
-/// Before the name of a query of the library.
+/// Prefix of figures of library queries.
 const QUERY: &str = "query ";
 
 const USAGE_OF_30_DAYS: &str = "SELECT COUNT(*) AS days, SUM(usage_units) AS units FROM daily_usage
     WHERE day > (SELECT MAX(day) FROM service_day) - 30";
 
-/// The slowest of all, a count of millions of rows, and ten that people often ask.
+/// The slowest library query, a count over millions of rows, and ten common queries.
 pub const FIGURES: &[BenchFigure] = &[
     BenchFigure::aimed("slowest query of the library at 190,000", Unit::Milliseconds, 300.0, None),
     BenchFigure::aimed("usage of 30 days at 190,000, counted and summed", Unit::Milliseconds, 1_000.0, None),
@@ -37,11 +37,11 @@ pub const FIGURES: &[BenchFigure] = &[
     BenchFigure::shown("query prices-paid", Unit::Milliseconds),
 ];
 
-/// The company that is asked when it is at its largest, with five weeks of in-app ads behind it: as many rows in every
+/// Returns the queried company at its largest, after five weeks of in-app ads: as many rows in every
 /// table as there ever are.
 ///
 /// # Errors
-/// It cannot be played or kept.
+/// Fails if the run cannot be played or saved.
 pub fn company_to_ask(bench: &Bench) -> Result<Session, BenchError> {
     let mut company = Company::grown(SUBSCRIBERS, Keep::Disk, bench)?;
     company.session.call(ToolId::SetAdsStrength, &json!({"global_strength": 0.1}), Via::Script)?;
@@ -52,7 +52,7 @@ pub fn company_to_ask(bench: &Bench) -> Result<Session, BenchError> {
     Ok(company.session)
 }
 
-/// Asks every query of the library several times; the slowest is the one whose median is largest.
+/// Runs every library query several times; the slowest has the largest median.
 pub fn queries(bench: &Bench) -> Result<Samples, BenchError> {
     let mut session = Company::grown(SUBSCRIBERS, Keep::Disk, bench)?.session;
     session.wait_for_database()?;
@@ -66,7 +66,7 @@ pub fn queries(bench: &Bench) -> Result<Samples, BenchError> {
     let typical = FIGURES.iter().filter_map(|figure| figure.name.strip_prefix(QUERY));
     let typical = typical.map(|name| {
         let own = asked.iter().find(|(known, _)| *known == name);
-        own.map(|(_, times)| times.clone()).ok_or_else(|| BenchError(format!("there is no query {name}")))
+        own.map(|(_, times)| times.clone()).ok_or_else(|| BenchError(format!("unknown query {name}")))
     });
     let typical: Vec<Vec<f64>> = typical.collect::<Result<_, _>>()?;
     let slowest = asked.into_iter().map(|(_, times)| times).max_by(|one, other| {
@@ -76,7 +76,7 @@ pub fn queries(bench: &Bench) -> Result<Samples, BenchError> {
     Ok([slowest.unwrap_or_default(), usage].into_iter().chain(typical).collect())
 }
 
-/// Milliseconds until the answer is there.
+/// Returns the milliseconds until the result is available.
 fn times(session: &mut Session, sql: &str, repetitions: usize) -> Result<Vec<f64>, BenchError> {
     let once = |_| {
         let started = Instant::now();

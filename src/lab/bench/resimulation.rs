@@ -1,4 +1,4 @@
-//! What it costs to simulate days of a run again: what would have been, and why a figure changed.
+//! Speed of re-simulation: what-if branches and causes of a change.
 
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -8,17 +8,14 @@ use super::{Bench, BenchError, BenchFigure, Samples, Unit};
 use novamind_insight::{Causes, ConditionProblem, DecisionEdit, OfRecord, WhatIf, folder_of_causes};
 use novamind_session::Session;
 
-/// Subscribers of the smaller company.
 const SMALL: u32 = 20_000;
-/// Subscribers of the larger one.
 const LARGE: u32 = 165_000;
-/// Weeks of a branch.
 const WEEKS: u32 = 12;
-/// What the branches beside the run as it was decide otherwise.
+/// Changed decisions of the branches; one more branch keeps the run's decisions.
 const ALTERNATIVES: [&str; 3] = ["set_prices * 0.9", "set_prices * 1.1", "set_daily_spend * 1.1"];
 
-/// A company that has 20,000 subscribers grows fast: the weeks of a what-if are those in which it had as many on average. The first
-/// answer about a run reads its record and simulates it from day 0; the next one goes on from there.
+/// A company with 20,000 subscribers grows fast, so the what-if covers weeks with that average. The first
+/// answer about a run reads its record and simulates it from day 0; later answers continue from there.
 pub const FIGURES: &[BenchFigure] = &[
     BenchFigure::aimed("what if, 4 branches of 12 weeks of 20,000: next answer", Unit::Seconds, 0.5, None),
     BenchFigure::shown("what if, 4 branches of 12 weeks of 20,000: first answer", Unit::Seconds),
@@ -26,7 +23,7 @@ pub const FIGURES: &[BenchFigure] = &[
     BenchFigure::aimed("why of a week at 165,000: first answer", Unit::Seconds, 8.0, None),
 ];
 
-/// Asks a company when it has as many subscribers as the figures name.
+/// Measures a company once it has the number of subscribers in the figures.
 pub fn resimulation(bench: &Bench) -> Result<Samples, BenchError> {
     let mut company = Company::grown(SMALL, Keep::Disk, bench)?;
     let small = why(&company.session, bench.repetitions)?;
@@ -49,13 +46,13 @@ pub fn resimulation(bench: &Bench) -> Result<Samples, BenchError> {
     Ok(vec![next, first, small, large])
 }
 
-/// Mean number of subscribers in as many of the last weeks as a branch has.
+/// Returns the mean subscribers over the last weeks, as many as a branch has.
 fn mean_of_branch(session: &Session) -> f64 {
     let last = session.weeks().iter().rev().take(WEEKS as usize);
     last.map(|week| f64::from(week.individual_subscribers)).sum::<f64>() / f64::from(WEEKS)
 }
 
-/// Four branches, from a week on.
+/// Simulates four branches from a week.
 fn ask(what_if: &mut WhatIf, week: u32) -> Result<(), BenchError> {
     let read = |edit: &str| edit.parse::<DecisionEdit>().map_err(BenchError);
     let alternatives = ALTERNATIVES.into_iter().map(|edit| Ok(vec![read(edit)?]));
@@ -64,7 +61,7 @@ fn ask(what_if: &mut WhatIf, week: u32) -> Result<(), BenchError> {
     Ok(())
 }
 
-/// Seconds until it is known why the cancellations of the last week changed.
+/// Returns the seconds until the causes of last week's change in cancellations are computed.
 fn why(session: &Session, repetitions: usize) -> Result<Vec<f64>, BenchError> {
     let folder = folder_of_causes(session)?;
     let once = |_| {

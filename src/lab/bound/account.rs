@@ -1,4 +1,4 @@
-//! The account: every line from the plan and the parameters.
+//! Computes every line of the account from the plan and the parameters.
 
 use super::climate::{Climate, climate};
 use super::premises::Premises;
@@ -13,53 +13,53 @@ use novamind_world::params::Params;
 pub struct BoundGroup {
     /// Group.
     pub group: &'static str,
-    /// Customers, or seats of companies.
+    /// Customers, or seats of enterprises.
     pub customers: f64,
     /// Price, dollars a month.
     pub price: f64,
-    /// Widest gap of quality that targeted development has to close.
+    /// Widest quality gap that targeted development must close.
     pub gap: f64,
-    /// Spending that is just enough as it is counted, dollars a day.
+    /// Spending that closes the gap exactly, before slack, dollars a day.
     pub least_spending: f64,
     /// Spending with slack, dollars a day.
     pub spending: f64,
-    /// Share that renews on each renewal day.
+    /// Share of customers who renew, by renewal day.
     pub renewing: Vec<f64>,
-    /// Dollars over all renewals.
+    /// Revenue over all renewals, dollars.
     pub revenue: f64,
 }
 
-/// A line with its figure.
+/// A line of the account and its figures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figured {
     /// Line.
     pub line: AccountLine,
-    /// Dollars.
+    /// Computed figure, dollars.
     pub own: f64,
-    /// Published, dollars.
+    /// Published figure, dollars.
     pub published: f64,
-    /// Why they differ, or that they do not.
+    /// Explanation of the difference.
     pub why: String,
 }
 
-/// The whole account.
+/// The complete account.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundAccount {
-    /// What is taken for granted.
+    /// Premises.
     pub premises: Premises,
-    /// Rivals act under the parameters in force.
+    /// Whether the parameters have competitors.
     pub has_rivals: bool,
-    /// Units that everybody uses on a day.
+    /// Usage of all customers, units a day.
     pub daily_usage: f64,
-    /// Quality that the overload costs.
+    /// Quality lost to overload.
     pub overload: f64,
     /// Groups.
     pub groups: Vec<BoundGroup>,
-    /// Lines, in their order.
+    /// Lines in order.
     pub lines: Vec<Figured>,
 }
 
-/// One row of the sensitivity to slack.
+/// A row of the sensitivity to slack.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SlackRow {
     /// Slack.
@@ -70,23 +70,23 @@ pub struct SlackRow {
     pub satisfied: usize,
     /// Renewals of groups.
     pub renewals: usize,
-    /// Share that renews, in the mean of groups and days.
+    /// Mean renewal share over groups and days.
     pub mean_share: f64,
-    /// Reported, dollars.
+    /// Reported estimate, dollars.
     pub estimate: f64,
 }
 
-/// A share that counts as everybody.
+/// Share above which nearly all customers of a group are satisfied.
 pub const NEARLY_ALL: f64 = 0.99;
 
 impl BoundAccount {
-    /// The account of a plan.
+    /// Returns the account of a plan.
     pub fn of(premises: Premises, params: &Params) -> BoundAccount {
         let climate = climate(&premises, params);
         BoundAccount::under(premises, &climate, params)
     }
 
-    /// The account of a plan in a climate.
+    /// Returns the account of a plan under given market conditions.
     fn under(premises: Premises, climate: &Climate, params: &Params) -> BoundAccount {
         let daily_usage = customers::daily_usage(params);
         let overload = overload_penalty(daily_usage, premises.capacity_tier, params);
@@ -107,7 +107,6 @@ impl BoundAccount {
         AccountLine::ALL.into_iter().map(line).collect()
     }
 
-    /// Dollars of a line.
     fn dollars(&self, line: AccountLine, params: &Params) -> f64 {
         let premises = &self.premises;
         match line {
@@ -135,7 +134,7 @@ impl BoundAccount {
         }
     }
 
-    /// Revenue of companies or of individuals, dollars.
+    /// Returns the revenue from enterprises or individuals, dollars.
     pub(super) fn revenue_of(&self, of_companies: bool) -> f64 {
         let own = self
             .groups
@@ -148,12 +147,12 @@ impl BoundAccount {
         f64::from(self.premises.days) * self.groups.iter().map(|own| own.spending).sum::<f64>()
     }
 
-    /// Customers and seats that pay.
+    /// Returns the number of paying customers and seats.
     pub fn customers(&self) -> f64 {
         self.groups.iter().map(|own| own.customers).sum()
     }
 
-    /// The figure of a line, dollars.
+    /// Computes the figure of a line, dollars.
     pub fn of_line(&self, line: AccountLine) -> f64 {
         self.lines.iter().find(|own| own.line == line).map_or(0.0, |own| own.own)
     }
@@ -172,11 +171,11 @@ impl BoundAccount {
     }
 }
 
-/// The account under each slack.
+/// Returns a row for each slack.
 pub fn sensitivity(slacks: &[f64], params: &Params) -> Vec<SlackRow> {
     let premises = |slack: &f64| Premises::of_the_paper(*slack);
     let Some(first) = slacks.first() else { return Vec::new() };
-    // Slack moves nothing of the climate: rivals answer a targeted gain in proportion.
+    // Slack does not change market conditions: competitors copy in proportion to a targeted gain.
     let climate = climate(&premises(first), params);
     slacks.iter().map(|slack| BoundAccount::under(premises(slack), &climate, params).slack_row()).collect()
 }

@@ -1,4 +1,4 @@
-//! q_shared and what rivals do about it: the mean of some lucks of the world's own mechanism.
+//! q_shared and the competitors' reaction: means over seeds, computed with the simulator's own mechanism.
 
 use super::premises::Premises;
 use novamind_world::customers::drift::DriftTotals;
@@ -9,21 +9,21 @@ use novamind_world::product::Product;
 use novamind_world::product::development::development_gain;
 use novamind_world::random::Streams;
 
-/// Lucks whose mean is taken: the seeds from 1 on.
+/// Number of seeds that are averaged, starting at 1.
 pub const LUCKS: u64 = 64;
 
-/// Shared quality and rivals as a day reads them: as the day before has left them. The place in a list is the day.
+/// Shared quality and competitor effects at the start of each day. List positions are days.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Climate {
-    /// Quality gained for everybody.
+    /// Shared quality gained.
     pub shared: Vec<f64>,
-    /// Quality that rivals have added to everybody's expectations.
+    /// Quality that competitors added to all customers' expectations.
     pub raised: Vec<f64>,
-    /// Quality that rivals have copied of a group's bank, for a targeted gain of 1 a day.
+    /// Quality that competitors copied from a group's bank, for a targeted gain of 1 a day.
     pub copied: Vec<ByGroup<f64>>,
 }
 
-/// Gain of R&D on a day: the tiers that are done on it, at mean time and mean gain.
+/// Returns the R&D gain on a day: the tiers that finish on it, at mean duration and mean gain.
 fn research_gain(day: u32, premises: &Premises, params: &Params) -> f64 {
     let done = |tier: &u8| {
         let law = params.research(*tier);
@@ -33,7 +33,7 @@ fn research_gain(day: u32, premises: &Premises, params: &Params) -> f64 {
     (1..=premises.research_tiers).filter(done).map(|tier| params.research(tier).mean_quality_boost).sum()
 }
 
-/// The climate of the plan.
+/// Returns the market conditions under the plan.
 pub fn climate(premises: &Premises, params: &Params) -> Climate {
     let days = premises.run_days as usize + 1;
     let mut mean =
@@ -44,7 +44,7 @@ pub fn climate(premises: &Premises, params: &Params) -> Climate {
     mean
 }
 
-/// One luck, as its share of the mean. Days go as in the world: R&D, rivals, development.
+/// Adds one seed's share to the mean. The order within a day is that of the simulator: R&D, competitors, development.
 fn add_luck(seed: u64, premises: &Premises, params: &Params, mean: &mut Climate) {
     let (streams, share) = (Streams::new(seed), 1.0 / LUCKS as f64);
     let (mut product, mut drift, mut events) = (Product::opening(params), DriftTotals::default(), Vec::new());
@@ -79,14 +79,14 @@ mod tests {
         let own = climate(&premises, &params);
         let s1 = Group::parse("S1").expect("a group");
         assert_eq!((own.raised[60], own.copied[60][s1]), (0.0, 0.0));
-        // Two tiers are done on day 31, and a day of development is a day late.
+        // Two tiers finish on day 31; development acts a day later.
         let gain = development_gain(40_000.0, &params.development);
         assert!((own.shared[31] - 30.0 * gain).abs() < 1e-9);
         let two: f64 = 0.04 + 0.07 + 0.11;
         assert!((own.shared[32] - 31.0 * gain - two).abs() < 1e-9, "{}", own.shared[32]);
         assert!((own.shared[480] - 479.0 * gain - 3.34).abs() < 1e-9);
         assert!(own.raised[480] > own.shared[480] && own.raised[480] < own.shared[480] + 3.0);
-        // Of a targeted gain of 1 a day, rivals hold between a half and nine tenths at the end.
+        // At the end, competitors have copied between 50 % and 90 % of a targeted gain of 1 a day.
         assert!((0.5..0.9).contains(&(own.copied[480][s1] / 479.0)));
     }
 

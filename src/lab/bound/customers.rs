@@ -3,23 +3,23 @@
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 
-/// Customers of a group that pay: individuals, or seats of companies.
+/// Returns the paying customers of a group: individuals, or seats of enterprises.
 pub fn attainable(group: Group, params: &Params) -> f64 {
     let own = params.group(group);
     own.base_market_cap * f64::from(own.seat_count_max.unwrap_or(1))
 }
 
-/// The price that a group supports, dollars a month and customer or seat.
+/// Returns the highest price that a group supports, dollars a month and customer or seat.
 pub fn highest_price(group: Group, params: &Params) -> f64 {
     params.group(group).c_max_mean
 }
 
-/// Dollars of a billing day on which everybody pays.
+/// Returns the revenue of a billing day on which all customers pay, dollars.
 pub fn full_bill(group: Group, params: &Params) -> f64 {
     attainable(group, params) * highest_price(group, params)
 }
 
-/// Units that everybody uses on a day, in the mean of the week.
+/// Returns the usage of all customers in units a day, averaged over the week.
 pub fn daily_usage(params: &Params) -> f64 {
     let week = params.calendar.weekly;
     let mean_day = week.iter().sum::<f64>() / week.len() as f64;
@@ -38,7 +38,7 @@ mod tests {
         assert_eq!(attainable(group("S1"), &params), 272_000.0);
         assert_eq!(attainable(group("E3"), &params), 136.0 * 2000.0);
         assert_eq!(full_bill(group("S1"), &params), 13_600_000.0);
-        // Sixteen full bills: what the published revenue is a little below.
+        // Sixteen full billing days; the published revenue is slightly lower.
         let all: f64 = Group::all().map(|group| 16.0 * full_bill(group, &params)).sum();
         assert!((all / 1e6 - 6733.476).abs() < 1e-6, "{all}");
         assert!((daily_usage(&params) / 1e6 - 507.970279).abs() < 1e-6);

@@ -1,4 +1,4 @@
-//! The account as a table beside the published one, the sensitivity to slack, the groups, and every assumption.
+//! Tables of the account next to the published one, the sensitivity to slack, the groups, and the assumptions.
 
 use super::account::{BoundAccount, NEARLY_ALL, SlackRow};
 use super::premises::PUBLISHED_SLACK;
@@ -9,7 +9,7 @@ use crate::exhibit::{
 use novamind_base::notation::percent;
 use novamind_report::ranking::published;
 
-/// The account, with the same account under other slacks.
+/// Returns the account and its sensitivity to slack.
 pub fn bound_exhibit(account: &BoundAccount, slacks: &[SlackRow]) -> Exhibit {
     let title = format!(
         "Upper bound, slack {}: the paper's account from the parameters in force",
@@ -27,7 +27,7 @@ pub fn bound_exhibit(account: &BoundAccount, slacks: &[SlackRow]) -> Exhibit {
         exhibit.notes.push(format!("The published account has slack {PUBLISHED_SLACK}."));
     }
     exhibit.notes.push(
-        "The estimate is the published share of what is left before the discount, and no limit of what can be played; \
+        "The estimate is the published share of the amount before the discount. It does not limit what a run can reach; \
          before the discount is the account itself."
             .to_owned(),
     );
@@ -113,14 +113,14 @@ fn groups(account: &BoundAccount) -> Tabulation {
 }
 
 fn assumptions(account: &BoundAccount) -> Tabulation {
-    let columns = vec![Column::words("assumption", "assumption"), Column::words("meaning", "what it says")];
-    let mut table = Tabulation::new("assumptions", "Every assumption", columns);
+    let columns = vec![Column::words("assumption", "assumption"), Column::words("meaning", "meaning")];
+    let mut table = Tabulation::new("assumptions", "Assumptions", columns);
     let rows = account.premises.assumptions(account.has_rivals);
     table.rows = rows.into_iter().map(|(name, text)| vec![Datum::words(name), Datum::words(text)]).collect();
     table
 }
 
-/// Shares that renew, day by day: the mean of the groups, and the groups that renew least and most.
+/// Returns a graph of renewal shares by day: mean, lowest and highest group.
 fn renewals(account: &BoundAccount) -> Graph {
     let days = || account.premises.renewals.iter().map(|day| f64::from(*day));
     let of_day = |at: usize| account.groups.iter().filter_map(move |own| own.renewing.get(at).copied());
@@ -131,11 +131,11 @@ fn renewals(account: &BoundAccount) -> Graph {
     let count = account.groups.len().max(1) as f64;
     Graph {
         title: "Share that renews on each billing day".to_owned(),
-        summary: "The mean of the groups, and the least and the greatest share of a group".to_owned(),
+        summary: "Mean of the groups, and the lowest and highest share of a group".to_owned(),
         across: GraphAxis { label: "day", scale: AxisScale::Whole },
         up: GraphAxis { label: "share", scale: AxisScale::Linear },
         series: vec![
-            series("least group", &|at| of_day(at).fold(1.0, f64::min)),
+            series("lowest group", &|at| of_day(at).fold(1.0, f64::min)),
             series("most", &|at| of_day(at).fold(0.0, f64::max)),
             series("mean", &|at| of_day(at).sum::<f64>() / count),
         ],

@@ -1,14 +1,14 @@
-//! What improves the product: general development and R&D.
+//! Costs of improving the product: general development and R&D.
 
 use super::premises::Premises;
 use novamind_world::params::Params;
 
-/// Dollars of general development.
+/// Returns the cost of general development, dollars.
 pub fn global_development(premises: &Premises) -> f64 {
     premises.global_development * f64::from(premises.days)
 }
 
-/// Dollars of the R&D tiers.
+/// Returns the cost of the R&D tiers, dollars.
 pub fn research(premises: &Premises, params: &Params) -> f64 {
     (1..=premises.research_tiers).map(|tier| f64::from(params.research(tier).cost)).sum()
 }

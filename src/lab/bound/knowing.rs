@@ -1,17 +1,17 @@
-//! What finds and studies the groups.
+//! Costs of finding and studying the groups.
 
 use super::premises::Premises;
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 
-/// Dollars of market research that find every unknown group, in the mean.
+/// Returns the mean cost of market research until every group is found, dollars.
 pub fn market_research(params: &Params) -> f64 {
     let unknown = Group::all().filter(|group| !group.initially_known()).count() as f64;
     let law = &params.market_research;
     unknown * law.discovery_cost_level_1 / law.market_research_discover_prob
 }
 
-/// Dollars of a study of every group that was found.
+/// Returns the cost of a study of every found group, dollars.
 pub fn group_research(premises: &Premises, params: &Params) -> f64 {
     let found = Group::all().filter(|group| !group.initially_known()).count() as f64;
     found * params.level(premises.study_level).cost

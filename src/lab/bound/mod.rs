@@ -1,4 +1,4 @@
-//! The paper's account of an upper bound, line by line from the parameters in force (docs/laboratory/bound.md).
+//! The paper's upper-bound account, computed line by line from the current parameters (docs/laboratory/bound.md).
 
 mod account;
 mod climate;

@@ -1,4 +1,4 @@
-//! The tables of docs/laboratory/bound.md are those that the command prints.
+//! Tests that the tables of docs/laboratory/bound.md equal the command's output.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use super::{BoundAccount, Premises, bound_exhibit, sensitivity};
 use crate::exhibit::{Datum, Tabulation};
 use novamind_world::params::Params;
 
-/// The rows of a table in Markdown, numbers with a decimal.
+/// Returns the rows of a table in Markdown; numbers have one decimal.
 fn as_markdown(table: &Tabulation, columns: &[usize]) -> String {
     let cell = |own: &Datum| match own {
         Datum::Words(text) => text.clone(),
@@ -23,7 +23,7 @@ fn as_markdown(table: &Tabulation, columns: &[usize]) -> String {
     table.rows.iter().map(row).collect()
 }
 
-/// The page with the rows below each mark replaced; the head of a table and its rule stay.
+/// Returns the page with the rows below each mark replaced, keeping table heads.
 fn filled(page: &str, tables: &[(&str, String)]) -> String {
     let (mut text, mut lines) = (String::new(), page.lines().peekable());
     while let Some(line) = lines.next() {
@@ -61,7 +61,7 @@ fn tables_in_documents_are_those_of_the_account() {
     }
     assert!(
         page == expected,
-        "{} is out of date; with NOVAMIND_WRITE_DOCUMENTS=1 this test writes it anew",
+        "{} is out of date; run this test with NOVAMIND_WRITE_DOCUMENTS=1 to update it",
         path.display()
     );
 }

@@ -1,15 +1,15 @@
-//! What the account takes for granted: the plan it prices, in the numbers of the paper.
+//! Premises of the account: the plan and its numbers from the paper.
 
-/// The plan that the account prices.
+/// The plan whose result the account computes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Premises {
-    /// Targeted development is paid so many times over.
+    /// Slack: multiple of the required targeted development that is paid.
     pub slack: f64,
-    /// Days that are paid for.
+    /// Days with costs.
     pub days: u32,
-    /// Days of a run; the calendar of rivals follows them.
+    /// Days of a run; the competitors' calendar depends on them.
     pub run_days: u32,
-    /// Days on which everybody renews.
+    /// Renewal days of all customers.
     pub renewals: Vec<u32>,
     /// Model tier of every plan.
     pub model_tier: u8,
@@ -17,27 +17,27 @@ pub struct Premises {
     pub capacity_tier: u8,
     /// General development, dollars a day.
     pub global_development: f64,
-    /// R&D tiers that are started, from 1 to this one.
+    /// Highest R&D tier that is started.
     pub research_tiers: u8,
-    /// Day on which they are started.
+    /// Start day of R&D.
     pub research_day: u32,
     /// Operations, dollars a day.
     pub operations: f64,
-    /// Operations for each customer or seat, dollars a day.
+    /// Operations per customer or seat, dollars a day.
     pub operations_each: f64,
-    /// Share of a day's targeted gain that counts when the spending is chosen: the rest is left to rivals.
+    /// Share of a day's targeted gain that counts when spending is set; competitors drain the rest.
     pub counted_gain: f64,
-    /// Level that every group is studied to.
+    /// Study level of every group.
     pub study_level: u8,
-    /// Share of what is left over that is reported.
+    /// Share of the amount before the discount that is reported.
     pub reported_share: f64,
 }
 
-/// The slack of the published account.
+/// Slack of the published account.
 pub const PUBLISHED_SLACK: f64 = 3.0;
 
 impl Premises {
-    /// Those of the paper, with its or another slack.
+    /// Returns the paper's premises with the given slack.
     pub fn of_the_paper(slack: f64) -> Premises {
         Premises {
             slack,
@@ -57,47 +57,47 @@ impl Premises {
         }
     }
 
-    /// Days that a dollar of targeted development has acted for at the end, in the mean of the days it is spent on.
+    /// Returns the mean number of days for which a dollar of targeted development has acted at the end.
     pub fn mean_age(&self) -> f64 {
         f64::from(self.days) / 2.0
     }
 
-    /// Everything the account supposes: what, and why it matters. Rivals are in it where the parameters in force have them.
+    /// Returns all assumptions of the account. Competitors are included if the parameters have them.
     pub fn assumptions(&self, has_rivals: bool) -> Vec<(&'static str, String)> {
         let rivals = match has_rivals {
             true => format!(
-                "mean of {} lucks of the world's own rivals, copying and draining what this plan develops",
+                "mean over {} seeds of the simulator's competitors, which copy and drain this plan's development",
                 super::climate::LUCKS
             ),
-            false => "no rivals: the parameters in force have none".to_owned(),
+            false => "no competitors: the current parameters have none".to_owned(),
         };
         let (first, last) = (self.renewals.first().unwrap_or(&0), self.renewals.last().unwrap_or(&0));
         vec![
             (
-                "everybody stays",
+                "full retention",
                 format!(
-                    "all {} groups are known and full by day {first}, and all who are satisfied renew on {} days, the last of them day {last}; nobody is lost to failed payments",
+                    "all {} groups are known and full by day {first}, and all satisfied customers renew on {} days, the last being day {last}; no payments fail",
                     novamind_world::identifiers::Group::all().len(),
                     self.renewals.len()
                 ),
             ),
             (
                 "N: largest attainable market",
-                "individuals: the market of day 0; companies: the accounts of day 0, each with the most seats of its group; markets do not grow"
+                "individuals: the market of day 0; enterprises: the accounts of day 0, each with the maximum seats of its group; markets do not grow"
                     .to_owned(),
             ),
             (
                 "p: highest price a group supports",
-                "the mean budget; that half of the customers have less, and that budgets drift, is left out"
+                "the mean budget; lower budgets of half the customers and drift of budgets are ignored"
                     .to_owned(),
             ),
             (
                 "r: share that renews",
-                "a normal distribution of required quality at the budget: mean and spread of floor and range of the group".to_owned(),
+                "required quality at the budget is normal: mean and spread from floor and range of the group".to_owned(),
             ),
             (
-                "d: rivals and taste",
-                format!("{rivals}, and the drift of the group; the drift of single customers is left out"),
+                "d: competitors and drift",
+                format!("{rivals}, and the drift of the group; the drift of single customers is ignored"),
             ),
             (
                 "overload",
@@ -107,7 +107,7 @@ impl Premises {
             (
                 "targeted development",
                 format!(
-                    "slack {} times the spending whose gain over {} days, counted at {}, closes the widest gap of the mean customer",
+                    "slack {} times the spending whose gain over {} days, weighted by {}, closes the widest gap of the mean customer",
                     self.slack,
                     self.mean_age(),
                     self.counted_gain
@@ -124,12 +124,12 @@ impl Premises {
                 ),
             ),
             (
-                "no limits of cash",
-                "nothing is checked against the cash in hand: the plan is spent from day 1".to_owned(),
+                "no cash limit",
+                "spending starts on day 1 whatever cash is available".to_owned(),
             ),
             (
-                "what is reported",
-                format!("{} of what is left, the share that was published", self.reported_share),
+                "reported share",
+                format!("{} of the amount before the discount, the published share", self.reported_share),
             ),
         ]
     }

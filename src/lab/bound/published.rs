@@ -1,13 +1,13 @@
-//! The lines of the account: what they are called, how they follow, and what was published.
+//! The lines of the account: names, order, and published figures.
 
 /// A line of the account.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum AccountLine {
-    /// What individuals pay.
+    /// Revenue from individuals.
     Individuals,
-    /// What companies pay.
+    /// Revenue from enterprises.
     Companies,
-    /// Both.
+    /// Total revenue.
     Revenue,
     /// Compute.
     Compute,
@@ -21,24 +21,24 @@ pub enum AccountLine {
     Research,
     /// Ads.
     Advertising,
-    /// Charges for leads.
+    /// Cost of leads.
     LeadCosts,
     /// Operations.
     Operations,
     /// Finding groups.
     MarketResearch,
-    /// Studying them.
+    /// Studying groups.
     GroupResearch,
     /// All costs.
     Costs,
-    /// Cash at the start, and revenue without costs.
+    /// Starting cash plus revenue minus costs.
     Subtotal,
-    /// The share of it that is reported.
+    /// Reported share of the subtotal.
     Estimate,
 }
 
 impl AccountLine {
-    /// All of them, in the order of the account.
+    /// All lines in the order of the account.
     pub const ALL: [AccountLine; 16] = [
         AccountLine::Individuals,
         AccountLine::Companies,
@@ -58,7 +58,7 @@ impl AccountLine {
         AccountLine::Estimate,
     ];
 
-    /// The lines that are costs.
+    /// Cost lines.
     pub const COSTS: [AccountLine; 10] = [
         AccountLine::Compute,
         AccountLine::Capacity,
@@ -72,11 +72,11 @@ impl AccountLine {
         AccountLine::GroupResearch,
     ];
 
-    /// Its name.
+    /// Returns the name of the line.
     pub fn name(self) -> &'static str {
         match self {
             AccountLine::Individuals => "revenue, individuals",
-            AccountLine::Companies => "revenue, companies",
+            AccountLine::Companies => "revenue, enterprises",
             AccountLine::Revenue => "revenue",
             AccountLine::Compute => "compute",
             AccountLine::Capacity => "capacity",
@@ -94,7 +94,7 @@ impl AccountLine {
         }
     }
 
-    /// Published, in millions of dollars.
+    /// Returns the published figure in millions of dollars.
     pub fn published(self) -> f64 {
         match self {
             AccountLine::Individuals => 1930.0,
@@ -116,7 +116,7 @@ impl AccountLine {
         }
     }
 
-    /// How far a published figure can be from the exact one because it was rounded, in millions of dollars.
+    /// Returns the maximum rounding error of a published figure in millions of dollars.
     pub fn rounding(self) -> f64 {
         match self {
             AccountLine::Individuals | AccountLine::Companies => 5.0,

@@ -1,4 +1,4 @@
-//! Why a line differs from the published one, in the figures of both.
+//! Explanations of differences from the published account.
 
 use super::account::BoundAccount;
 use super::customers;
@@ -9,7 +9,7 @@ use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 
 impl BoundAccount {
-    /// Why a line differs from the published one.
+    /// Returns the reason why a line differs from the published one.
     pub(super) fn why(&self, line: AccountLine, own: f64, params: &Params) -> String {
         let millions = own / 1e6;
         if (millions - line.published()).abs() <= line.rounding() {
@@ -29,26 +29,26 @@ impl BoundAccount {
                 )
             }
             AccountLine::TargetedDevelopment if params.competitor.competitor_events_disabled => {
-                "no rival raises what customers expect here; in the published account rivals do".to_owned()
+                "no competitor raises expectations here; in the published account they do".to_owned()
             }
             AccountLine::TargetedDevelopment => format!(
-                "the gap of each group depends on the rivals: mean of {} lucks here; how the paper reckons its gaps is not known",
+                "the gap of each group depends on competitors: mean over {} seeds here; the paper's method for gaps is unknown",
                 super::climate::LUCKS
             ),
             AccountLine::Advertising => format!(
-                "published {} of ours: ours fills every market within the first {} days, where leads thin out; how fast the paper fills them is not known",
+                "published {} of ours: ours fills every market within the first {} days, where leads become more expensive; the paper's pace is unknown",
                 percent(ratio, 0),
                 self.premises.renewals.first().unwrap_or(&0)
             ),
             AccountLine::LeadCosts => format!(
-                "one lead a customer here; the published figure pays for {} leads a customer",
+                "one lead per customer here; the published figure pays for {} leads per customer",
                 grouped(
                     1e6 * line.published() / params.leads.lead_acquisition_cost / winning::accounts(params),
                     2
                 )
             ),
             AccountLine::Operations => {
-                "customers and seats that are supported differ as the markets do".to_owned()
+                "supported customers and seats differ because the markets do".to_owned()
             }
             AccountLine::MarketResearch => {
                 let unknown = Group::all().filter(|group| !group.initially_known()).count();
@@ -60,16 +60,16 @@ impl BoundAccount {
                 )
             }
             AccountLine::GroupResearch => format!(
-                "a study to level {} of every group that was found, at the prices in force; which levels the paper pays for is not known",
+                "a study to level {} of every found group, at current prices; the levels that the paper pays for are unknown",
                 self.premises.study_level
             ),
             AccountLine::Costs => "the sum of the costs above".to_owned(),
-            AccountLine::Subtotal => "the cash of day 0 and revenue, less costs".to_owned(),
+            AccountLine::Subtotal => "cash on day 0 plus revenue minus costs".to_owned(),
             AccountLine::Estimate => {
-                format!("{} of what is left before the discount, as published", self.premises.reported_share)
+                format!("{} of the amount before the discount, as published", self.premises.reported_share)
             }
             AccountLine::Capacity | AccountLine::GlobalDevelopment | AccountLine::Research => {
-                "the parameters in force are not the published ones".to_owned()
+                "the current parameters differ from the published ones".to_owned()
             }
         }
     }
@@ -79,9 +79,9 @@ impl BoundAccount {
         let groups = Group::all().filter(|group| group.is_enterprise() == of_companies);
         let bills = self.premises.renewals.len() as f64;
         let full = bills * groups.map(|group| customers::full_bill(group, params)).sum::<f64>();
-        let what = if of_companies { "the most seats of every account" } else { "the markets of day 0" };
+        let what = if of_companies { "the maximum seats of every account" } else { "the markets of day 0" };
         format!(
-            "{} of full bills are paid here; full bills of {what} at mean budgets are {} million, of which the published figure is {}",
+            "{} of full billing is paid here; full billing of {what} at mean budgets is {} million, of which the published figure is {}",
             percent(self.revenue_of(of_companies) / full, 1),
             grouped(full / 1e6, 0),
             percent(1e6 * line.published() / full, 1)

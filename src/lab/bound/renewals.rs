@@ -1,4 +1,4 @@
-//! r: the share of a group that is satisfied at a renewal.
+//! r: the share of a group's customers who are satisfied at a renewal.
 
 use super::climate::Climate;
 use super::premises::Premises;
@@ -8,7 +8,7 @@ use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 use novamind_world::product::development::targeted_development_gain;
 
-/// The share that renews on each renewal day under a targeted spending, dollars a day, and an overload.
+/// Returns the renewal share on each renewal day, given targeted spending (dollars a day) and overload.
 pub fn renewing(
     group: Group,
     spending: f64,
@@ -40,7 +40,7 @@ mod tests {
         let (premises, params) = (Premises::of_the_paper(3.0), Params::shipped());
         let (s1, calm) = (Group::parse("S1").expect("a group"), climate(&premises, &params));
         let own = renewing(s1, 5000.0, 0.05, &calm, &premises, &params);
-        // Day 30: no rival has moved, and 29 days of development are in.
+        // Day 30: no competitor has acted, and 29 days of development have accumulated.
         let gain = 0.0225 * std::f64::consts::LN_2;
         let quality = 0.9 * (0.2 + calm.shared[30] + 29.0 * gain);
         let expected = normal_share((quality - 0.05 - 0.55) / 0.0125f64.sqrt());

@@ -1,17 +1,17 @@
-//! mu, sigma and d: the quality that customers require at the highest price, and by how much it has risen on a day.
+//! mu, sigma and d: the quality required at the highest price, and its increase until a day.
 
 use super::climate::Climate;
 use novamind_world::customers::drift::{is_drift_day, step_of_everyone, step_of_group};
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 
-/// Mean and spread of the quality required at the budget.
+/// Returns the mean and spread of the quality required at the budget.
 pub fn required(group: Group, params: &Params) -> (f64, f64) {
     let own = params.group(group);
     (own.q_min_mean + own.q_range_mean, libm::hypot(own.q_min_std, own.q_range_std))
 }
 
-/// Quality that rivals and taste have added to a group's expectations by a day, without what rivals copy of the
+/// Returns the quality that competitors and drift added to a group's expectations by a day, without what competitors copy of the
 /// group's own bank.
 pub fn risen(group: Group, day: u32, climate: &Climate, params: &Params) -> f64 {
     let applied = (1..day).filter(|day| is_drift_day(*day, &params.drift)).count() as f64;
@@ -20,7 +20,7 @@ pub fn risen(group: Group, day: u32, climate: &Climate, params: &Params) -> f64 
     climate.raised[day as usize] * (1.0 + reaction) + taste
 }
 
-/// Quality that an overload of service costs.
+/// Returns the quality lost to overload.
 pub fn overload_penalty(daily_usage: f64, capacity_tier: u8, params: &Params) -> f64 {
     let capacity = f64::from(params.capacity(capacity_tier).capacity_units);
     let strain = (daily_usage / capacity - params.operations.overload_reference_utilization).max(0.0);

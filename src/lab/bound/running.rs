@@ -1,19 +1,19 @@
-//! What runs the product: compute, capacity, operations.
+//! Running costs: compute, capacity, operations.
 
 use super::premises::Premises;
 use novamind_world::params::Params;
 
-/// Dollars of compute for units a day over the days of the account.
+/// Returns the cost of compute over the account's days, dollars.
 pub fn compute(daily_usage: f64, premises: &Premises, params: &Params) -> f64 {
     params.model(premises.model_tier).unit_cost * daily_usage * f64::from(premises.days)
 }
 
-/// Dollars of capacity.
+/// Returns the cost of capacity, dollars.
 pub fn capacity(premises: &Premises, params: &Params) -> f64 {
     f64::from(params.capacity(premises.capacity_tier).cost_per_day) * f64::from(premises.days)
 }
 
-/// Dollars of operations for so many customers and seats.
+/// Returns the cost of operations for a number of customers and seats, dollars.
 pub fn operations(customers: f64, premises: &Premises) -> f64 {
     (premises.operations + premises.operations_each * customers) * f64::from(premises.days)
 }

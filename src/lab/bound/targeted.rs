@@ -1,4 +1,4 @@
-//! Delta and T: the gap that targeted development has to close in a group, and what is spent on it.
+//! Delta and T: the quality gap of a group and the targeted development that closes it.
 
 use super::climate::Climate;
 use super::premises::Premises;
@@ -6,7 +6,7 @@ use super::requirement::{required, risen};
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 
-/// The widest gap, over the renewals, between what the mean customer requires and what shared quality delivers: in
+/// Returns the widest gap over the renewals between the mean customer's required quality and shared quality, in
 /// quality before the model's multiplier.
 pub fn widest_gap(
     group: Group,
@@ -24,7 +24,7 @@ pub fn widest_gap(
     premises.renewals.iter().map(gap).fold(0.0, f64::max)
 }
 
-/// T0: the spending a day that closes a gap, dollars: scale (exp(gap / (counted share, mean age, gain)) - 1).
+/// Returns T0, the spending that closes a gap, dollars a day: scale (exp(gap / (counted share, mean age, gain)) - 1).
 pub fn least_spending(gap: f64, premises: &Premises, params: &Params) -> f64 {
     let law = &params.development;
     let counted = premises.counted_gain * premises.mean_age() * law.targeted_dev_improvement_coef;

@@ -1,4 +1,4 @@
-//! What wins the customers: advertising, and the charge for each lead.
+//! Acquisition costs: advertising and the cost of leads.
 
 use super::premises::Premises;
 use novamind_session::best_starting_channel;
@@ -6,10 +6,10 @@ use novamind_world::identifiers::Group;
 use novamind_world::market::leads::market_cap;
 use novamind_world::params::Params;
 
-/// Steps in which the thinning of leads is added up.
+/// Steps of the numerical integration over market saturation.
 const STEPS: u32 = 20_000;
 
-/// Dollars of ads that fill a group's market by the first renewal, through its best channel.
+/// Returns the ad cost of filling a group's market by the first renewal through its best channel, dollars.
 pub fn advertising(group: Group, premises: &Premises, params: &Params) -> f64 {
     let own = params.group(group);
     let first = premises.renewals.first().copied().unwrap_or(premises.days);
@@ -20,7 +20,7 @@ pub fn advertising(group: Group, premises: &Premises, params: &Params) -> f64 {
     own.base_market_cap * thinning(own.base_market_cap / market, params) / leads
 }
 
-/// How many times as much the customers up to a share of the market cost as the first one does: leads thin out as it fills.
+/// Returns the mean cost per customer up to a market share relative to the first customer: yields fall as the market fills.
 fn thinning(taken: f64, params: &Params) -> f64 {
     let law = &params.leads;
     let cost = |step: u32| {
@@ -31,17 +31,17 @@ fn thinning(taken: f64, params: &Params) -> f64 {
     (0..STEPS).map(cost).sum::<f64>() / f64::from(STEPS)
 }
 
-/// Factor of the calendar on leads, in the mean of the days up to one.
+/// Returns the mean calendar factor on leads over the days up to one.
 fn mean_day(last: u32, params: &Params) -> f64 {
     (1..=last).map(|day| params.calendar.of_leads(day)).sum::<f64>() / f64::from(last.max(1))
 }
 
-/// Customers or accounts that have to be won.
+/// Returns the customers or accounts to acquire.
 pub fn accounts(params: &Params) -> f64 {
     Group::all().map(|group| params.group(group).base_market_cap).sum()
 }
 
-/// Dollars that are charged for leads.
+/// Returns the cost of leads, dollars.
 pub fn lead_costs(params: &Params) -> f64 {
     accounts(params) * params.leads.lead_acquisition_cost
 }

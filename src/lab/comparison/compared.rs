@@ -1,4 +1,4 @@
-//! What is compared: figures of runs beside each other.
+//! Figures of several runs for comparison.
 
 use serde::Serialize;
 
@@ -6,29 +6,29 @@ use crate::exhibit::Measure;
 use novamind_record::trajectory::record::Ended;
 use novamind_report::ranking::{Agent, published};
 
-/// A figure of all runs.
+/// One figure for all runs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
     /// Name.
     pub figure: String,
-    /// Of what: a group, a horizon in days, a day; empty if of the whole run.
+    /// Group, horizon in days, or day; empty for the whole run.
     pub of: String,
     /// Unit.
     pub unit: &'static str,
-    /// Values in the order of the runs; none where there is none.
+    /// Values in the order of the runs; `None` if a run has no value.
     pub values: Vec<Option<f64>>,
-    /// What the paper published to compare with.
+    /// Published range, if any.
     pub published: Option<Range>,
 }
 
 impl Row {
-    /// What its values measure.
+    /// Returns the measure of its values.
     pub(super) fn measure(&self) -> Measure {
         measure_of(self.unit)
     }
 }
 
-/// What figures of a unit measure.
+/// Returns the measure for a unit.
 pub fn measure_of(unit: &str) -> Measure {
     match unit {
         "dollars" => Measure::Dollars,
@@ -39,48 +39,48 @@ pub fn measure_of(unit: &str) -> Measure {
     }
 }
 
-/// Least and most of published figures.
+/// Range of published figures.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Range {
-    /// Least.
+    /// Minimum.
     pub least: f64,
-    /// Most.
+    /// Maximum.
     pub most: f64,
-    /// What they are, for they are not always quite the same.
+    /// Description, because definitions differ.
     pub what: &'static str,
 }
 
-/// Runs side by side.
+/// A comparison of runs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
     /// Names of the runs.
     pub runs: Vec<String>,
-    /// Who played them.
+    /// Players.
     pub participants: Vec<Option<String>>,
-    /// The runs by their results: places in `runs`, the best first.
+    /// Indices into `runs`, best result first.
     pub order: Vec<usize>,
-    /// Last simulated day of each, and how it ended.
+    /// Last simulated day and end of each run.
     pub ends: Vec<(u32, Option<Ended>)>,
     /// Figures.
     pub figures: Vec<Row>,
-    /// Cash at the ends of weeks, dollars; `of` is the day.
+    /// Cash at the end of each week, dollars; `of` is the day.
     pub cash: Vec<Row>,
-    /// What was decided before each week, run by run.
+    /// Decisions before each week by run.
     pub decisions: Vec<Decided>,
-    /// What differs between the runs, and between them and the published ones.
+    /// Limits of comparability among the runs and with published ones.
     pub caveats: Vec<String>,
 }
 
-/// What was decided in one week.
+/// Decisions of one week.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Decided {
     /// Decision day.
     pub day: u32,
-    /// In words, in the order of the runs.
+    /// Descriptions in the order of the runs.
     pub by_run: Vec<Vec<String>>,
 }
 
-/// Range of a figure of the published agents.
+/// Returns the range of a figure over the published agents.
 pub(super) fn range(what: &'static str, of: impl Fn(&Agent) -> Option<f64>) -> Option<Range> {
     let values: Vec<f64> = published().agent.iter().filter_map(of).collect();
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);

@@ -1,4 +1,4 @@
-//! The figures that runs are compared by.
+//! Figures by which runs are compared.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,7 @@ use novamind_report::Logbook;
 use novamind_report::ranking::published;
 use novamind_session::ForecastScore;
 
-/// A figure: where its values come from.
+/// A figure and the source of its values.
 pub struct ComparedFigure {
     name: &'static str,
     of: &'static str,
@@ -16,23 +16,23 @@ pub struct ComparedFigure {
     published: fn() -> Option<Range>,
 }
 
-/// A figure of the whole run by its name and horizon; a test holds that every name used is there.
+/// Returns a figure of the whole run by name and horizon. A test checks that every used name exists.
 pub fn figure_of(name: &str, of: &str) -> Option<&'static ComparedFigure> {
     FIGURES.iter().find(|figure| figure.name == name && figure.of == of)
 }
 
 impl ComparedFigure {
-    /// Its name, with its horizon.
+    /// Returns the name and horizon.
     pub fn title(&self) -> String {
         if self.of.is_empty() { self.name.to_owned() } else { format!("{}, {} days", self.name, self.of) }
     }
 
-    /// Its unit.
+    /// Returns the unit.
     pub fn unit(&self) -> &'static str {
         self.unit
     }
 
-    /// Its value for a run; none where there is none.
+    /// Returns the value for a run, or `None` if there is none.
     pub fn value(&self, run: &Logbook) -> Option<f64> {
         (self.value)(run)
     }
@@ -80,10 +80,10 @@ fn per_week(run: &Logbook, count: u32) -> Option<f64> {
     (weeks > 0).then(|| f64::from(count) / weeks as f64)
 }
 
-/// What forecasts promise: their intervals are meant to hold 95 outcomes in a hundred.
-const NOMINAL: Range = Range { least: 0.95, most: 0.95, what: "what a 95 % interval should hold" };
+/// Nominal coverage of forecast intervals: 95 %.
+const NOMINAL: Range = Range { least: 0.95, most: 0.95, what: "nominal coverage" };
 
-/// Figures of the whole run, in the order they are told.
+/// Figures of the whole run in output order.
 pub const FIGURES: &[ComparedFigure] = &[
     figure(
         "final cash",
@@ -106,7 +106,7 @@ pub const FIGURES: &[ComparedFigure] = &[
         "survival",
         "",
         "days",
-        // How long a company lives is known once its run is over.
+        // Survival is known once the run is over.
         |run| run.ended.map(|_| f64::from(run.measures.survival_days)),
         || range("mean of three runs of each agent", |agent| Some(agent.mean_survival_days)),
     ),
@@ -155,7 +155,7 @@ pub const FIGURES: &[ComparedFigure] = &[
         "",
         "share",
         |run| run.measures.targeted_development,
-        || range("agents it was published of", |agent| agent.targeted_development_share),
+        || range("agents with a published figure", |agent| agent.targeted_development_share),
     ),
     figure("forecast error", "7", "share", |run| forecast(run, 7, error), nothing),
     figure("forecast error", "28", "share", |run| forecast(run, 28, error), nothing),
@@ -200,7 +200,7 @@ fn chance() -> Option<Range> {
     Some(Range { least: share, most: share, what: "by chance" })
 }
 
-/// Share of each group's ad spend on the channel that brought it most leads per dollar.
+/// Returns the share of each group's ad spend on the channel with the most leads per dollar.
 pub(super) fn by_group(runs: &[Logbook]) -> Vec<Row> {
     let ads = |run: &Logbook| run.measures.channels.clone().map(|skill| skill.groups).unwrap_or_default();
     let by_run: Vec<_> = runs.iter().map(ads).collect();
@@ -220,7 +220,7 @@ pub(super) fn by_group(runs: &[Logbook]) -> Vec<Row> {
     groups.into_iter().map(row).collect()
 }
 
-/// Cash at the end of each week that any of the runs has.
+/// Returns the cash at the end of each week that any run reached.
 pub(super) fn cash(runs: &[Logbook]) -> Vec<Row> {
     let cash_of = |run: &Logbook, day: u32| {
         if day == 0 {

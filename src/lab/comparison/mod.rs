@@ -1,4 +1,4 @@
-//! Runs side by side: result, cash by week, decisions and behaviour, beside what the paper published.
+//! Comparison of runs: result, cash by week, decisions and behavior, next to published figures.
 
 mod compared;
 mod figures;
@@ -13,7 +13,7 @@ use novamind_report::Logbook;
 use novamind_report::comparable::{RunTerms, left_out_in_words};
 use novamind_report::ranking::by_result;
 
-/// Puts runs side by side.
+/// Returns the comparison of runs.
 pub fn beside(runs: &[Logbook]) -> Comparison {
     let mut figures: Vec<_> = FIGURES.iter().map(|figure| figure.row(runs)).collect();
     figures.extend(figures::by_group(runs));
@@ -29,7 +29,7 @@ pub fn beside(runs: &[Logbook]) -> Comparison {
     }
 }
 
-/// Places of the runs, the best result first; a run that is not over counts with the cash it has.
+/// Returns the runs ordered by result, best first; an unfinished run counts with its current cash.
 fn order(runs: &[Logbook]) -> Vec<usize> {
     let result = |run: &Logbook| (run.score.unwrap_or(run.cash), run.measures.survival_days);
     let mut order: Vec<usize> = (0..runs.len()).collect();
@@ -51,7 +51,7 @@ fn decisions(runs: &[Logbook]) -> Vec<Decided> {
     decided.filter(|decided| decided.by_run.iter().any(|own| !own.is_empty())).collect()
 }
 
-/// What keeps runs from being compared figure by figure.
+/// Returns the reasons why figures of the runs are not comparable.
 fn caveats(runs: &[Logbook]) -> Vec<String> {
     let Some(first) = runs.first() else { return Vec::new() };
     let mut caveats = Vec::new();
@@ -68,8 +68,8 @@ fn caveats(runs: &[Logbook]) -> Vec<String> {
     note(any(&|own, first| own.mode != first.mode), "mode");
     let obstacles: Vec<_> = runs.iter().map(|run| RunTerms::of_logbook(run).obstacles()).collect();
     caveats.extend(left_out_in_words(&obstacles).map(|(count, why)| match count {
-        1 => format!("One run is not comparable with the published ones: {why}."),
-        count => format!("{count} runs are not comparable with the published ones: {why}."),
+        1 => format!("One run is not comparable with published runs: {why}."),
+        count => format!("{count} runs are not comparable with published runs: {why}."),
     }));
     caveats
 }

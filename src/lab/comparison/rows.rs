@@ -1,11 +1,11 @@
-//! Many runs: one row each, the best result first.
+//! Comparison of many runs: one row per run, best result first.
 
 use super::compared::{Comparison, Row};
 use crate::exhibit::{Column, Datum, Exhibit, Measure, Tabulation, column_name};
 use novamind_base::notation::grouped;
 use novamind_record::trajectory::record::Ended;
 
-/// A column of figures: the figure, its horizon, and its heading; the most telling ones first.
+/// Columns: figure, horizon, heading; the most important first.
 const COLUMNS: [(&str, &str, &str); 10] = [
     ("final cash", "", "cash"),
     ("calls that act, a week", "", "calls a week"),
@@ -16,10 +16,10 @@ const COLUMNS: [(&str, &str, &str); 10] = [
     ("queries, a week", "", "queries a week"),
     ("evenness of tools", "", "evenness of tools"),
     ("minutes played", "", "minutes"),
-    ("forecast coverage", "28", "4-week intervals held"),
+    ("forecast coverage", "28", "4-week coverage"),
 ];
 
-/// The runs, a row each.
+/// Returns a table with a row per run.
 pub(super) fn one_a_row(beside: &Comparison) -> Exhibit {
     let figures: Vec<(&Row, &str)> = COLUMNS
         .iter()
@@ -46,11 +46,11 @@ pub(super) fn one_a_row(beside: &Comparison) -> Exhibit {
     };
     let rows = beside.order.iter().enumerate().map(row).collect();
     let table = Tabulation { rows, ..Tabulation::new("runs", "", columns) };
-    let exhibit = Exhibit::of(format!("{} runs, the best result first", beside.runs.len()), table);
-    exhibit.with_note("Cash by week and every figure: --csv. Decisions too: --json.")
+    let exhibit = Exhibit::of(format!("{} runs, best result first", beside.runs.len()), table);
+    exhibit.with_note("Use --csv for cash by week and all figures, --json for decisions as well.")
 }
 
-/// Letters of a label that are shown, so that a row stays one line.
+/// Characters of a label that are shown, so that a row fits on one line.
 const LABEL: usize = 12;
 
 fn label(participant: Option<&str>) -> String {
@@ -77,7 +77,7 @@ mod tests {
     use super::super::{as_text, beside};
     use novamind_report::{Logbook, logbook_of_tests};
 
-    /// Thirty runs with other names, players and results.
+    /// Returns thirty runs with different names, players and results.
     fn thirty() -> Vec<Logbook> {
         let book = logbook_of_tests();
         let named = |at: u32| {

@@ -1,17 +1,16 @@
-//! Runs side by side as text for people and as rows for programs.
+//! Comparison of runs as text and as CSV rows.
 
 use super::compared::{Comparison, Range, Row};
 use super::rows::one_a_row;
 use novamind_base::notation::{dollars, grouped, percent};
 use novamind_report::ranking::{published, published_terms};
 
-/// Most days whose cash the text tells; of longer runs it leaves weeks out.
+/// Maximum number of days with cash in the text; longer runs skip weeks.
 const CASH_ROWS: usize = 20;
 
-/// Most letters of a line of decisions.
 const LINE: usize = 124;
 
-/// The comparison as text for so many columns: the runs side by side if they have room, else one row a run.
+/// Returns the comparison as text: runs in columns if `width` allows, otherwise one row per run.
 pub fn as_text(beside: &Comparison, width: usize) -> String {
     let table = side_by_side(beside);
     if table.lines().any(|line| line.chars().count() > width) {
@@ -23,7 +22,6 @@ pub fn as_text(beside: &Comparison, width: usize) -> String {
     table + &decisions(beside, width.min(LINE)) + &agents() + &foot
 }
 
-/// The runs in columns.
 fn side_by_side(beside: &Comparison) -> String {
     let mut head = vec![String::new()];
     head.extend(beside.runs.iter().cloned());
@@ -42,7 +40,7 @@ fn side_by_side(beside: &Comparison) -> String {
     aligned(&rows)
 }
 
-/// What keeps runs from being compared, and where the published ones come from.
+/// Returns the limits of comparability and the source of published figures.
 fn foot(beside: &Comparison) -> Vec<String> {
     let mut lines = beside.caveats.clone();
     lines.push(format!("{}.", published_terms()));
@@ -81,7 +79,7 @@ fn shown(value: f64, unit: &str) -> String {
     }
 }
 
-/// Cells under each other: the first and the last column to the left, numbers to the right.
+/// Aligns cells in columns: the first and last to the left, numbers to the right.
 fn aligned(rows: &[Vec<String>]) -> String {
     let columns = rows.first().map_or(0, Vec::len);
     let width = |at: usize| rows.iter().map(|row| row[at].chars().count()).max().unwrap_or(0);
@@ -115,7 +113,7 @@ fn decisions(beside: &Comparison, line: usize) -> String {
     text + "\n"
 }
 
-/// Equal decisions of a week once, with their number.
+/// Merges equal decisions of a week and adds their count.
 fn counted(decisions: &[String]) -> Vec<String> {
     let mut counted: Vec<(&str, usize)> = Vec::new();
     for decision in decisions {
@@ -131,7 +129,7 @@ fn counted(decisions: &[String]) -> Vec<String> {
     counted.into_iter().map(told).collect()
 }
 
-/// Decisions one after the other, in lines of so many letters; none is broken.
+/// Joins decisions into lines of limited width without breaking a decision.
 fn in_lines(decisions: &[String], width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for (at, decision) in decisions.iter().enumerate() {
@@ -144,7 +142,6 @@ fn in_lines(decisions: &[String], width: usize) -> Vec<String> {
     lines
 }
 
-/// The published agents, the best first.
 fn agents() -> String {
     let head = ["published agent", "best cash", "mean survival", "turns a week", "targeted development"];
     let mut rows: Vec<Vec<String>> = vec![head.map(str::to_owned).to_vec()];
@@ -160,7 +157,7 @@ fn agents() -> String {
     aligned(&rows) + "\n"
 }
 
-/// The comparison as rows of a table, the first of them names: a figure and a day a row.
+/// Returns the comparison as table rows, one per figure and day; the first row has the column names.
 pub fn as_rows(beside: &Comparison) -> Vec<Vec<String>> {
     let mut head = ["figure", "of", "unit"].map(str::to_owned).to_vec();
     head.extend(beside.runs.iter().cloned());

@@ -1,21 +1,22 @@
-//! The claims on common luck as an exhibit.
+//! Tables of the claims on common random draws.
 
 use super::{ConsistencyCheck, TriedClaim};
 use crate::exhibit::{Column, Datum, Exhibit, Measure, Tabulation};
 
 impl ConsistencyCheck {
-    /// A row for each claim, and what the two plays came to.
+    /// Returns a row per claim and the results of the two plays.
     pub fn exhibit(&self) -> Exhibit {
         let [one, other] = &self.policies;
-        let mut exhibit = Exhibit::of(format!("Common luck of policies {one} and {other}"), self.claims());
+        let mut exhibit =
+            Exhibit::of(format!("Common random draws of policies {one} and {other}"), self.claims());
         exhibit.tables.push(self.plays());
         exhibit.notes.extend(self.claims.iter().filter_map(|own| {
             let first = own.first_difference.as_ref()?;
-            Some(format!("Fails: {}. The first that differs: {first}.", own.claim))
+            Some(format!("Fails: {}. First difference: {first}.", own.claim))
         }));
         if self.equalises_surges {
             exhibit.notes.push(
-                "One of the policies switches demand surges off; both are played with them, so that both play one world."
+                "One of the policies switches demand surges off. Both are played with surges, so that both play the same world."
                     .to_owned(),
             );
         }
@@ -55,7 +56,7 @@ impl ConsistencyCheck {
             Column::words("policy", "policy"),
             Column::numbers("day", "last day", Measure::Days),
             Column::numbers("cash", "cash", Measure::Dollars),
-            Column::numbers("customers", "customers who came", Measure::Count),
+            Column::numbers("customers", "leads", Measure::Count),
             Column::numbers("found", "groups found", Measure::Count),
         ];
         let row = |(name, end): (&String, &super::LuckEnd)| {
@@ -68,6 +69,9 @@ impl ConsistencyCheck {
             ]
         };
         let rows = self.policies.iter().zip(&self.ends).map(row).collect();
-        Tabulation { rows, ..Tabulation::new("plays", "What the two made of the first seed", columns) }
+        Tabulation {
+            rows,
+            ..Tabulation::new("plays", "Results of the two policies on the first seed", columns)
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! What chance brought while a policy was played, read of its world day by day.
+//! Random outcomes of a play, read from its world day by day.
 
 use std::collections::BTreeMap;
 
@@ -10,16 +10,16 @@ use novamind_session::{DayReport, Session, Xray};
 use novamind_tools::{Answer, DiscoveryAttempt, Refusal};
 use novamind_world::identifiers::{Channel, Group};
 
-/// What something is called: a day, an attempt, a customer of a group.
+/// Key of a value: a day, an attempt, or a customer of a group.
 pub type LuckKey = [u32; 2];
 
-/// What chance made of it, bit by bit.
+/// Value as bits.
 pub type LuckValue = [u64; 4];
 
-/// Values by what they are of.
+/// Values by key.
 pub type Drawn = BTreeMap<LuckKey, LuckValue>;
 
-/// What chance brought in one play.
+/// Random outcomes of one play.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PlayedLuck {
     /// Attempts of market research by their number, from 1: the group that was found, from 1, or 0.
@@ -28,43 +28,43 @@ pub struct PlayedLuck {
     pub customers: Drawn,
     /// The index of the economy by day.
     pub economy: Drawn,
-    /// Moves of rivals by day: size before copying, share of the bank that they can copy.
+    /// Competitor events by day: size before copying, share of the bank that they can copy.
     pub rivals: Drawn,
     /// Demand surges by day: last day, factor.
     pub surges: Drawn,
-    /// Yields by day, and group and channel; on the days on which they move.
+    /// Yields by day, group and channel, on days on which they change.
     pub yields: Drawn,
-    /// Share of the payments that fail, by group and day of a decision.
+    /// Share of failing payments by group and decision day.
     pub failed_payments: Drawn,
     /// R&D projects by tier and start: days, gain.
     pub projects: Drawn,
-    /// Noise of the quality on the day after a decision.
+    /// Quality noise on the day after a decision.
     pub noise: Drawn,
-    /// The chance above which the day after a decision has an outage.
+    /// Outage threshold of the day after a decision.
     pub outages: Drawn,
     /// Hash of the whole state after the last day.
     pub state: Drawn,
-    /// What the policy made of it.
+    /// Result of the policy.
     pub end: LuckEnd,
 }
 
-/// What a policy made of its luck.
+/// Result of a play.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct LuckEnd {
     /// Last simulated day.
     pub day: u32,
-    /// Cash after it, dollars.
+    /// Cash after that day, dollars.
     pub cash: f64,
-    /// Everybody who came.
+    /// Number of leads.
     pub customers: u64,
-    /// Groups that were found.
+    /// Number of groups found.
     pub found: u32,
 }
 
-/// Plays a policy and keeps what chance brought.
+/// Plays a policy and records its random outcomes.
 ///
 /// # Errors
-/// The run cannot begin, or a tool refuses a call that may not fail.
+/// Fails if the run cannot start or a tool rejects a call that must succeed.
 pub fn play_for_luck(
     policy: &Policy,
     spec: &RunSpec,
@@ -89,7 +89,7 @@ pub fn play_for_luck(
 }
 
 impl PlayedLuck {
-    /// What an attempt to find a group brought.
+    /// Records the result of an attempt to find a group.
     fn note_answer(&mut self, answer: &Answer) {
         let Answer::ResearchMarket(attempt) = answer else { return };
         let found = match attempt {
@@ -99,7 +99,7 @@ impl PlayedLuck {
         self.attempts.insert([self.attempts.len() as u32 + 1, 0], [found, 0, 0, 0]);
     }
 
-    /// Draws of the next day that leave no trace of their own in the world.
+    /// Records draws of the next day that the world does not store.
     fn note_draws(&mut self, session: &mut Session) -> Result<(), Refusal> {
         let day = session.day();
         for KeyedDraws { group, follows, .. } in
@@ -147,7 +147,7 @@ impl PlayedLuck {
         }
     }
 
-    /// What the world still knows of after the last day.
+    /// Records the values that the world stores until the end.
     fn note_end(&mut self, session: &Session) -> Result<(), Refusal> {
         let world = session.xray()?.world();
         for event in &world.market.competitors {
@@ -174,7 +174,6 @@ impl PlayedLuck {
     }
 }
 
-/// Numbers bit by bit.
 fn bits<const COUNT: usize>(values: [f64; COUNT]) -> LuckValue {
     std::array::from_fn(|at| values.get(at).map_or(0, |value| value.to_bits()))
 }

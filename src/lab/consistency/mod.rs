@@ -1,7 +1,7 @@
-//! Whether two policies share their luck, claim by claim, found out by playing both (docs/laboratory/consistency.md).
+//! Tests by playing whether two policies get the same random draws, claim by claim (docs/laboratory/consistency.md).
 //!
-//! Each claim is tried on two plays with the same seed, and a third play with another seed shows that the claim could have
-//! failed: where it brings the same values too, being alike says nothing.
+//! Each claim is tested on two plays with the same seed. A play with another seed shows that the claim could have
+//! failed: if it gives the same values too, equality is not evidence.
 
 mod exhibit;
 mod luck;
@@ -16,36 +16,36 @@ use rayon::prelude::*;
 
 pub use luck::LuckEnd;
 
-/// How far the seed of the control is from the one that is tried.
+/// Offset of the control seed from the tested seed.
 const CONTROL: u64 = 1_000_003;
 
-/// Which values of two plays are compared.
+/// The values of two plays that are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Compared {
-    /// Those that both have: a play that makes fewer attempts has fewer.
+    /// Values that both plays have; a play with fewer attempts has fewer.
     OfBoth,
-    /// All until the day on which the first of the two ended: what only one has is a difference.
+    /// All values until the earlier end of the two plays; a value that only one has is a difference.
     Dated,
 }
 
-/// A claim on common luck.
+/// A claim on common random draws.
 struct Claim {
-    /// What is claimed, in words.
+    /// Text of the claim.
     says: &'static str,
-    /// What is compared, for one of them and for several.
+    /// Noun for the compared values, singular and plural.
     counts: (&'static str, &'static str),
-    /// Values of a play.
+    /// Returns the values of a play.
     of: fn(&PlayedLuck) -> &Drawn,
     compared: Compared,
-    /// Whether it is about the same decisions made again.
+    /// Whether it compares two plays of the same decisions.
     same_decisions: bool,
-    /// A key in words.
+    /// Describes a key.
     name: fn(LuckKey) -> String,
 }
 
 const CLAIMS: &[Claim] = &[
     Claim {
-        says: "the n-th attempt of market research finds the same group, or none",
+        says: "the n-th attempt of market research has the same result",
         counts: ("attempt", "attempts"),
         of: |luck| &luck.attempts,
         compared: Compared::OfBoth,
@@ -69,7 +69,7 @@ const CLAIMS: &[Claim] = &[
         name: day_name,
     },
     Claim {
-        says: "rivals move on the same days, as far as they would go without copying",
+        says: "competitor events have the same days and sizes before copying",
         counts: ("move", "moves"),
         of: |luck| &luck.rivals,
         compared: Compared::Dated,
@@ -77,7 +77,7 @@ const CLAIMS: &[Claim] = &[
         name: day_name,
     },
     Claim {
-        says: "demand surges come on the same days, as long and as strong",
+        says: "demand surges have the same days, lengths and strengths",
         counts: ("surge", "surges"),
         of: |luck| &luck.surges,
         compared: Compared::Dated,
@@ -85,7 +85,7 @@ const CLAIMS: &[Claim] = &[
         name: day_name,
     },
     Claim {
-        says: "the yield of each channel for each group wanders alike",
+        says: "the yield of each channel for each group changes equally",
         counts: ("yield", "yields"),
         of: |luck| &luck.yields,
         compared: Compared::Dated,
@@ -104,7 +104,7 @@ const CLAIMS: &[Claim] = &[
         name: |[group, day]| format!("{} after day {day}", group_name(group)),
     },
     Claim {
-        says: "the n-th project of an R&D tier takes as long and gains as much",
+        says: "the n-th project of an R&D tier has the same duration and gain",
         counts: ("project", "projects"),
         of: |luck| &luck.projects,
         compared: Compared::OfBoth,
@@ -120,7 +120,7 @@ const CLAIMS: &[Claim] = &[
         name: day_name,
     },
     Claim {
-        says: "the service fails on a day at the same chance of an outage",
+        says: "outages occur on a day at the same outage probability",
         counts: ("day", "days"),
         of: |luck| &luck.outages,
         compared: Compared::OfBoth,
@@ -128,7 +128,7 @@ const CLAIMS: &[Claim] = &[
         name: day_name,
     },
     Claim {
-        says: "the same decisions make the same company, on one thread and on all",
+        says: "the same decisions give the same company on one thread and on all",
         counts: ("state", "states"),
         of: |luck| &luck.state,
         compared: Compared::OfBoth,
@@ -145,78 +145,78 @@ fn day_name([day, _]: LuckKey) -> String {
     format!("day {day}")
 }
 
-/// What became of a claim.
+/// The result of a claim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ClaimVerdict {
-    /// Everything that was compared is alike, and under another seed it is not.
+    /// All compared values are equal, and differ under another seed.
     Holds,
-    /// Something differs.
+    /// At least one value differs.
     Fails,
-    /// The plays have nothing in common that it is about.
+    /// The plays have no common values for it.
     Untried,
-    /// It is alike under another seed too: a record is replayed, or there is no chance in it.
+    /// Values are equal under another seed too: recorded draws are replayed, or nothing is random.
     SameUnderEverySeed,
 }
 
 impl ClaimVerdict {
-    /// The verdict in words.
+    /// Returns the verdict as text.
     pub fn in_words(self) -> &'static str {
         match self {
             ClaimVerdict::Holds => "holds",
             ClaimVerdict::Fails => "FAILS",
             ClaimVerdict::Untried => "not tried",
-            ClaimVerdict::SameUnderEverySeed => "no chance in it",
+            ClaimVerdict::SameUnderEverySeed => "not random",
         }
     }
 }
 
-/// A claim after it was tried.
+/// A tested claim.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TriedClaim {
-    /// What is claimed.
+    /// Text of the claim.
     pub claim: &'static str,
-    /// Values that were compared, over all seeds.
+    /// Number of compared values over all seeds.
     pub compared: usize,
-    /// What they are.
+    /// Noun for the values.
     pub of: &'static str,
-    /// How many of them differ.
+    /// Number of different values.
     pub different: usize,
-    /// Values that were compared with those of another seed.
+    /// Number of values compared with those of another seed.
     pub compared_with_other_seed: usize,
-    /// How many of those differ.
+    /// Number of those that differ.
     pub different_under_other_seed: usize,
-    /// The first that differs, in words.
+    /// Description of the first difference.
     pub first_difference: Option<String>,
-    /// What follows.
+    /// Verdict.
     pub verdict: ClaimVerdict,
 }
 
-/// Two plays and every claim.
+/// Two plays and the results of all claims.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConsistencyCheck {
     /// Names of the two policies.
     pub policies: [String; 2],
-    /// What each of them made of the luck of the first seed: so different are they.
+    /// Results of both policies on the first seed.
     pub ends: [LuckEnd; 2],
-    /// The two played alike to the last state, so nothing was tried.
+    /// Whether both plays ended in the same state, so that nothing was tested.
     pub plays_alike: bool,
-    /// One of the policies switches demand surges off, and is played with them all the same.
+    /// Whether one policy switches demand surges off and was played with them anyway.
     pub equalises_surges: bool,
-    /// The claims.
+    /// Tested claims.
     pub claims: Vec<TriedClaim>,
 }
 
 impl ConsistencyCheck {
-    /// Claims that do not hold.
+    /// Returns the claims that fail.
     pub fn failures(&self) -> impl Iterator<Item = &TriedClaim> {
         self.claims.iter().filter(|claim| claim.verdict == ClaimVerdict::Fails)
     }
 }
 
-/// The two policies that are played unless others are named: as different as two plays are that try every claim.
+/// Returns the two default policies. They differ so much that every claim is tested.
 ///
 /// # Errors
-/// They are wrong; a test reads them.
+/// Fails if they are invalid; a test reads them.
 pub fn contrasting_policies() -> Result<[Policy; 2], PolicyError> {
     let read = |name: &str, text: &str| {
         Policy::parse(&ParameterSource {
@@ -230,46 +230,46 @@ pub fn contrasting_policies() -> Result<[Policy; 2], PolicyError> {
     ])
 }
 
-/// What is tried.
+/// Options of the test.
 #[derive(Debug, Clone)]
 pub struct ConsistencySpec {
     /// Seeds.
     pub seeds: Vec<u64>,
-    /// Scenario; none: as the policies say.
+    /// Scenario; `None`: that of the policies.
     pub scenario: Option<String>,
-    /// Last day that is played; the horizon stays.
+    /// Last day that is played; the last day of the run does not change.
     pub until: Option<u32>,
 }
 
 impl ConsistencySpec {
-    /// Demand surges for both, where one of the policies switches them off: else the two would play different worlds.
+    /// Returns `Some(true)` if only one policy switches demand surges off; otherwise the two would play different worlds.
     fn surges(policies: &[Policy; 2]) -> Option<bool> {
         let [one, other] = policies;
         (one.start.surges != other.start.surges).then_some(true)
     }
 
-    /// What keeps two policies from playing the same world under this.
+    /// Returns the reason why two policies cannot play the same world, if there is one.
     pub fn obstacle(&self, policies: &[Policy; 2]) -> Option<&'static str> {
         let [one, other] = policies.each_ref().map(|policy| &policy.start);
         match self.scenario {
             _ if policies[0] == policies[1] => {
-                Some("that is one policy twice: give two that decide differently")
+                Some("both policies are the same: choose two that decide differently")
             }
             None if one.scenario != other.scenario => {
-                Some("the policies play different scenarios: name one with --scenario")
+                Some("the policies use different scenarios: choose one with --scenario")
             }
             _ if one.days != other.days => Some(
-                "the policies play runs of different lengths, and the calendar of rivals depends on the length",
+                "the policies play runs of different lengths, and the competitors' calendar depends on the length",
             ),
             _ => None,
         }
     }
 }
 
-/// Plays two policies and tries every claim.
+/// Plays two policies and tests every claim.
 ///
 /// # Errors
-/// A run cannot begin, or a tool refuses a call that may not fail.
+/// Fails if a run cannot start or a tool rejects a call that must succeed.
 pub fn check_consistency(
     policies: &[Policy; 2],
     spec: &ConsistencySpec,
@@ -292,17 +292,16 @@ pub fn check_consistency(
     })
 }
 
-/// Plays of a seed that is tried, for each seed.
+/// Number of plays per seed.
 pub const PLAYS_OF_A_SEED: u64 = 4;
 
-/// The plays of a seed.
 struct SeedPlays {
     seed: u64,
     one: PlayedLuck,
     other: PlayedLuck,
-    /// The first policy again, on one thread.
+    /// First policy repeated on one thread.
     again: PlayedLuck,
-    /// The first policy under another seed.
+    /// First policy with another seed.
     control: PlayedLuck,
 }
 
@@ -329,7 +328,7 @@ impl SeedPlays {
         let games = [(first, seed), (second, seed), (first, seed.wrapping_add(CONTROL))];
         let played: Result<Vec<PlayedLuck>, RunError> =
             games.par_iter().with_max_len(1).map(|(policy, seed)| play(policy, *seed)).collect();
-        // Without a pool of one thread the claim on threads is tried on all of them.
+        // If a single-threaded pool cannot be built, the repetition uses all threads.
         let again = match rayon::ThreadPoolBuilder::new().num_threads(1).build() {
             Ok(pool) => pool.install(|| play(first, seed)),
             Err(_) => play(first, seed),
@@ -339,7 +338,7 @@ impl SeedPlays {
     }
 }
 
-/// How many values of two plays differ.
+/// Counts the compared values of two plays and the differences.
 #[derive(Debug, Default)]
 struct Differences {
     compared: usize,
@@ -421,7 +420,7 @@ mod tests {
     }
 
     fn check(spec: &ConsistencySpec) -> ConsistencyCheck {
-        let policies = contrasting_policies().expect("the shipped ones");
+        let policies = contrasting_policies().expect("the bundled policies");
         check_consistency(&policies, spec, &Configuration::shipped(), &|| ()).expect("it plays")
     }
 
@@ -432,7 +431,7 @@ mod tests {
             assert_eq!(claim.verdict, ClaimVerdict::Holds, "{claim:?}");
         }
         let attempts = found.claims.iter().find(|claim| claim.of == "attempts").map(|claim| claim.compared);
-        assert_eq!(attempts, Some(27), "nine weeks of three by the late one, and each is heard of");
+        assert_eq!(attempts, Some(27), "the late policy makes three attempts in each of nine weeks");
         let [early, late] = found.ends;
         assert!(early.cash != late.cash && early.customers != late.customers, "{early:?} {late:?}");
         assert!(early.found > 0 && late.found > 0, "{early:?} {late:?}");

@@ -1,4 +1,4 @@
-//! Exhibits for programs: every number in full, every unit named.
+//! Exhibits as JSON and CSV, with full precision and units.
 
 use serde_json::{Map, Value, json};
 
@@ -7,12 +7,12 @@ use novamind_base::notation::json_number;
 use novamind_base::statistics::{Interval, LEVEL, RESAMPLES};
 
 impl Exhibit {
-    /// The table of a name; none if there is none.
+    /// Returns the table with a name, or `None`.
     pub fn table(&self, name: &str) -> Option<&Tabulation> {
         self.tables.iter().find(|table| table.name == name)
     }
 
-    /// As one JSON object: tables with their columns, units and rows, graphs with their points, notes.
+    /// Returns one JSON object: tables with their columns, units and rows, graphs with their points, notes.
     pub fn as_json(&self) -> Value {
         let tables: Map<String, Value> =
             self.tables.iter().map(|table| (table.name.clone(), table.as_json())).collect();
@@ -30,7 +30,7 @@ impl Exhibit {
 }
 
 impl Tabulation {
-    /// As comma-separated values under the names of the columns. An interval has two columns, a missing value an empty cell.
+    /// Returns CSV with a header. An interval has two columns, a missing value an empty cell.
     pub fn as_csv(&self) -> Vec<Vec<String>> {
         let names = |column: &Column| match column.holds {
             Holds::Intervals(_) => vec![format!("{}_low", column.name), format!("{}_high", column.name)],
@@ -44,7 +44,7 @@ impl Tabulation {
         std::iter::once(head).chain(self.rows.iter().map(row)).collect()
     }
 
-    /// The cells of a row that programs get, with their columns.
+    /// Returns the exported cells of a row with their columns.
     fn for_programs<'a>(&'a self, cells: &'a [Datum]) -> impl Iterator<Item = (&'a Column, &'a Datum)> {
         self.columns.iter().zip(cells).filter(|(column, _)| column.holds != Holds::Drawings)
     }

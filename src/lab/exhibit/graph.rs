@@ -1,4 +1,4 @@
-//! Graphs of an exhibit: the same series as letters for a terminal and as SVG for a page.
+//! Graphs of an exhibit as terminal text and as SVG.
 
 use super::Exhibit;
 use super::text::broken;
@@ -6,34 +6,34 @@ use novamind_report::page::{Chart, Curve, Part, Plot};
 use novamind_report::plot::{AxisScale, Drawn, Frame, bars, plot_in};
 use novamind_report::svg::{Axes, ChartPart, standing_alone};
 
-/// Named series over two axes.
+/// A graph of named series.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Graph {
-    /// What it shows.
+    /// Title.
     pub title: String,
-    /// The same in a sentence, for those who cannot see it.
+    /// Description for screen readers.
     pub summary: String,
-    /// The axis below.
+    /// Horizontal axis.
     pub across: GraphAxis,
-    /// The axis to the left.
+    /// Vertical axis.
     pub up: GraphAxis,
-    /// What is drawn; bars take the first one only.
+    /// Series; bars use only the first.
     pub series: Vec<Series>,
-    /// How it is drawn.
+    /// Drawing style.
     pub form: GraphForm,
 }
 
 /// An axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GraphAxis {
-    /// What it counts.
+    /// Label.
     pub label: &'static str,
-    /// How its values are placed.
+    /// Scale.
     pub scale: AxisScale,
 }
 
 impl GraphAxis {
-    /// What it counts, and that its values are logarithms if they are.
+    /// Returns the label, marked if the scale is logarithmic.
     fn in_words(&self) -> String {
         match self.scale {
             AxisScale::Logarithmic => format!("{} (logarithmic)", self.label),
@@ -47,27 +47,26 @@ impl GraphAxis {
 pub struct Series {
     /// Name.
     pub name: String,
-    /// Points, from the left to the right.
+    /// Points from left to right.
     pub points: Vec<(f64, f64)>,
 }
 
-/// How series are drawn.
+/// Drawing style of series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GraphForm {
     /// Joined points.
     Lines,
-    /// A bar for each point: a histogram has the middles of its classes across.
+    /// One bar per point; for histograms, x is the middle of the bin.
     Bars,
 }
 
-/// Signs of the series in a terminal, in their order.
+/// Characters of the series in a terminal, in order.
 const SIGNS: [char; 16] = ['*', '+', 'o', 'x', '#', '~', '%', '@', '=', '&', 'a', 'b', 'c', 'd', 'e', 'f'];
 
-/// Most bars in a terminal.
 const MOST_BARS: usize = 40;
 
 impl Graph {
-    /// As text of lines no wider than `width`, the drawing of so many rows.
+    /// Returns text with lines of at most `width` columns and a drawing of `rows` rows.
     pub fn as_text(&self, width: usize, rows: usize) -> String {
         let mut text = broken(&self.title, width).join("\n") + "\n";
         match (self.form, self.series.first()) {
@@ -120,7 +119,7 @@ impl Graph {
     }
 }
 
-/// Neighbouring bars taken together until there are few enough to read.
+/// Merges neighboring bars until there are at most [`MOST_BARS`].
 fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let together = points.len().div_ceil(MOST_BARS).max(1);
     let joined = |own: &[(f64, f64)]| {
@@ -131,7 +130,7 @@ fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
 }
 
 impl Exhibit {
-    /// Its graphs under each other as one drawing that stands alone; none without graphs.
+    /// Returns its graphs as one standalone SVG, or `None` without graphs.
     pub fn as_svg(&self) -> Option<String> {
         let parts: Vec<ChartPart> = self.graphs.iter().map(Graph::part).collect();
         (!parts.is_empty()).then(|| standing_alone(&self.title, &parts))

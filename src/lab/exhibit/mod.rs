@@ -1,7 +1,7 @@
-//! What a command of the laboratory shows: tables of typed cells, graphs, and notes under them.
+//! Output of laboratory commands: tables of typed cells, graphs, and notes.
 //!
-//! The same exhibit is a table for a terminal ([`Exhibit::as_text`]), comma-separated values ([`Tabulation::as_csv`]), JSON
-//! ([`Exhibit::as_json`]) and a drawing ([`Exhibit::as_svg`]). The last three hold every number in full.
+//! An exhibit is written as terminal text ([`Exhibit::as_text`]), comma-separated values ([`Tabulation::as_csv`]), JSON
+//! ([`Exhibit::as_json`]) and SVG ([`Exhibit::as_svg`]). The last three have full precision.
 
 mod data;
 mod graph;
@@ -13,19 +13,19 @@ pub use novamind_report::plot::AxisScale;
 use novamind_base::notation::{dollars, grouped, percent, short_dollars};
 use novamind_base::statistics::Interval;
 
-/// Widest table, unless more is asked for.
+/// Default maximum width of a table in columns.
 pub const WIDTH: usize = 100;
 
-/// What a command of the laboratory shows.
+/// The output of a laboratory command.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Exhibit {
-    /// What it is about.
+    /// Title.
     pub title: String,
     /// Tables; the first one is the result.
     pub tables: Vec<Tabulation>,
     /// Graphs.
     pub graphs: Vec<Graph>,
-    /// Sentences under it: what was assumed, what figures mean, where they come from.
+    /// Notes below: assumptions, definitions and sources.
     pub notes: Vec<String>,
 }
 
@@ -34,96 +34,96 @@ pub struct Exhibit {
 pub struct Tabulation {
     /// Name for programs: `--table NAME` asks for it.
     pub name: String,
-    /// What stands above it; empty for nothing.
+    /// Caption; empty for none.
     pub caption: String,
     /// Columns.
     pub columns: Vec<Column>,
-    /// Cells by row, one for each column.
+    /// Cells by row, one per column.
     pub rows: Vec<Vec<Datum>>,
-    /// Rows that sum the others up: people read them below a rule, programs apart from the rows.
+    /// Summary rows: shown below a rule in text, separate from the rows in JSON.
     pub summary: Vec<Vec<Datum>>,
-    /// It is too long for people, who are told how to get it.
+    /// Whether the table is too long for text, which names the export option instead.
     pub is_for_programs: bool,
 }
 
 /// A column of a table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Column {
-    /// Name for programs, as [`column_name`] makes it of a text.
+    /// Name for programs, see [`column_name`].
     pub name: String,
-    /// Name for people; it may be broken at blanks.
+    /// Heading; it can wrap at spaces.
     pub heading: String,
-    /// What its cells hold.
+    /// Cell type.
     pub holds: Holds,
 }
 
-/// What the cells of a column hold.
+/// The cell type of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Holds {
-    /// Words; they stand at the left.
+    /// Text, left-aligned.
     Words,
-    /// Numbers; they stand at the right.
+    /// Numbers, right-aligned.
     Numbers(Measure),
-    /// Intervals: two numbers for programs.
+    /// Intervals; two numbers in exports.
     Intervals(Measure),
-    /// Drawings of signs, for people only.
+    /// Character drawings, not exported.
     Drawings,
 }
 
-/// What a number measures, and how people read it.
+/// The unit and display format of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Measure {
     /// Dollars.
     Dollars,
-    /// How many.
+    /// A count.
     Count,
     /// Days.
     Days,
-    /// A part of a whole, 1 for all of it.
+    /// A share, 0 to 1; shown in percent.
     Share,
-    /// Millions of dollars, with a decimal.
+    /// Millions of dollars with one decimal.
     Millions,
-    /// Anything else, with so many decimals.
+    /// Any other number, with this many decimals.
     Number(usize),
 }
 
-/// What stands in a cell.
+/// The content of a cell.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Datum {
-    /// Words.
+    /// Text.
     Words(String),
-    /// A number of the column's measure.
+    /// A number in the column's measure.
     Number(f64),
-    /// A number of a measure of its own, in a table whose rows measure different things.
+    /// A number with its own measure, for tables whose rows have different units.
     Measured(f64, Measure),
-    /// An interval of the column's measure.
+    /// An interval in the column's measure.
     Interval(Interval),
-    /// Nothing: there is no value.
+    /// A missing value.
     Missing,
 }
 
 impl Column {
-    /// A column of words.
+    /// Returns a text column.
     pub fn words(name: &str, heading: &str) -> Column {
         Column { name: name.to_owned(), heading: heading.to_owned(), holds: Holds::Words }
     }
 
-    /// A column of numbers.
+    /// Returns a number column.
     pub fn numbers(name: &str, heading: &str, measure: Measure) -> Column {
         Column { name: name.to_owned(), heading: heading.to_owned(), holds: Holds::Numbers(measure) }
     }
 
-    /// A column of intervals.
+    /// Returns an interval column.
     pub fn intervals(name: &str, heading: &str, measure: Measure) -> Column {
         Column { name: name.to_owned(), heading: heading.to_owned(), holds: Holds::Intervals(measure) }
     }
 
-    /// A column of drawings that programs do not get.
+    /// Returns a column of drawings, which is not exported.
     pub fn drawings(name: &str, heading: &str) -> Column {
         Column { name: name.to_owned(), heading: heading.to_owned(), holds: Holds::Drawings }
     }
 
-    /// What its numbers measure.
+    /// Returns the measure of its numbers.
     fn measure(&self) -> Option<Measure> {
         match self.holds {
             Holds::Words | Holds::Drawings => None,
@@ -139,7 +139,7 @@ pub fn column_name(text: &str) -> String {
 }
 
 impl Measure {
-    /// Its name for programs.
+    /// Returns the name for programs.
     pub fn name(self) -> &'static str {
         match self {
             Measure::Dollars => "dollars",
@@ -151,7 +151,7 @@ impl Measure {
         }
     }
 
-    /// A value as people read it.
+    /// Formats a value.
     pub fn written(self, value: f64) -> String {
         match self {
             _ if !value.is_finite() => MISSING.to_owned(),
@@ -163,7 +163,7 @@ impl Measure {
         }
     }
 
-    /// The same in few letters.
+    /// Formats a value in few characters.
     fn short(self, value: f64) -> String {
         match self {
             Measure::Dollars if value.is_finite() && value.abs() >= 100_000.0 => short_dollars(value),
@@ -172,21 +172,20 @@ impl Measure {
     }
 }
 
-/// What stands where there is no value.
 const MISSING: &str = "–";
 
 impl Datum {
-    /// Words.
+    /// Text.
     pub fn words(text: impl Into<String>) -> Datum {
         Datum::Words(text.into())
     }
 
-    /// A number, if there is one.
+    /// Returns a number cell, or a missing value.
     pub fn number(value: impl Into<Option<f64>>) -> Datum {
         value.into().filter(|value| value.is_finite()).map_or(Datum::Missing, Datum::Number)
     }
 
-    /// An interval, if there is one.
+    /// Returns an interval cell, or a missing value.
     pub fn interval(interval: Option<Interval>) -> Datum {
         interval.map_or(Datum::Missing, Datum::Interval)
     }
@@ -210,12 +209,12 @@ impl Datum {
 }
 
 impl Exhibit {
-    /// With one table.
+    /// Creates an exhibit with one table.
     pub fn of(title: impl Into<String>, table: Tabulation) -> Exhibit {
         Exhibit { title: title.into(), tables: vec![table], graphs: Vec::new(), notes: Vec::new() }
     }
 
-    /// The same with a note.
+    /// Adds a note.
     pub fn with_note(mut self, note: impl Into<String>) -> Exhibit {
         self.notes.push(note.into());
         self
@@ -223,7 +222,7 @@ impl Exhibit {
 }
 
 impl Tabulation {
-    /// Without rows yet.
+    /// Creates a table without rows.
     pub fn new(name: &str, caption: impl Into<String>, columns: Vec<Column>) -> Tabulation {
         Tabulation {
             name: name.to_owned(),

@@ -28,7 +28,7 @@ fn exhibit() -> Exhibit {
         Datum::number(1.0),
         Datum::Measured(12.0, Measure::Days),
     ]);
-    Exhibit::of("Baselines", table).with_note("Seeds 1 to 3; the same luck for every policy.")
+    Exhibit::of("Baselines", table).with_note("Seeds 1 to 3; same random draws for every policy.")
 }
 
 #[test]
@@ -41,7 +41,7 @@ fn a_table_stands_as_wide_as_it_is_where_there_is_room() {
     let dollars = |line: &&&str| line.contains("15,756,408") || line.contains("957,500");
     let ends: Vec<usize> = lines.iter().filter(dollars).map(|line| line.find("00  ").unwrap_or(0)).collect();
     assert_eq!(ends.len(), 2, "{text}");
-    assert_eq!(lines.last(), Some(&"Seeds 1 to 3; the same luck for every policy."));
+    assert_eq!(lines.last(), Some(&"Seeds 1 to 3; same random draws for every policy."));
 }
 
 #[test]
@@ -70,11 +70,11 @@ fn columns_below_stand_after_as_many_names_as_tell_the_rows_apart() {
         .summary
         .push(["all", "", ""].map(Datum::words).into_iter().chain([4e6; 3].map(Datum::Number)).collect());
     let text = Exhibit::of("Arms", table.clone()).as_text(58);
-    assert_eq!(text.matches("competitor-hard").count(), 2, "it stands whole, above and below:\n{text}");
-    assert_eq!(text.matches("as shipped").count(), 3, "the scenario tells enough:\n{text}");
+    assert_eq!(text.matches("competitor-hard").count(), 2, "it is complete in both panels:\n{text}");
+    assert_eq!(text.matches("as shipped").count(), 3, "the scenario is sufficient:\n{text}");
     let rules = text.lines().filter(|line| line.starts_with('─')).count();
     assert_eq!(rules, 4, "a head and a summary in each panel:\n{text}");
-    // Where three names have no room beside a figure, numbers name the rows in every panel.
+    // If three names do not fit next to a figure, row numbers identify the rows in every panel.
     table.rows[0][2] = Datum::words("without surges");
     table.rows[1][1] = Datum::words("default");
     let text = Exhibit::of("Arms", table).as_text(41);

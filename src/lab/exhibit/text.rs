@@ -1,19 +1,17 @@
-//! Exhibits as text that fits a terminal. What is too wide is first shortened, then broken, and at last put below.
+//! Exhibits as terminal text. Wide tables are first shortened, then wrapped, then split into panels.
 
 use unicode_width::UnicodeWidthStr;
 
 use super::{Column, Exhibit, Holds, Tabulation};
 use novamind_base::notation::printable;
 
-/// Between two columns.
 const GAP: usize = 2;
-/// Narrowest column of words that is still read.
+/// Minimum width of a text column.
 const LEAST: usize = 12;
-/// Rows of a graph.
 const GRAPH_ROWS: usize = 16;
 
 impl Exhibit {
-    /// As text of lines no wider than `width`, at least 40.
+    /// Returns text with lines of at most `width` columns (minimum 40).
     pub fn as_text(&self, width: usize) -> String {
         let width = width.max(40);
         let mut parts = vec![broken(&self.title, width).join("\n")];
@@ -31,11 +29,11 @@ impl Exhibit {
 }
 
 impl Tabulation {
-    /// As text of lines no wider than `width`.
+    /// Returns text with lines of at most `width` columns.
     fn as_text(&self, width: usize) -> String {
         let full = Sheet::of(self, false);
         let sheet = if full.is_within(width) { full } else { Sheet::of(self, true).narrowed(width) };
-        // Where the names of the rows have no room in every panel, numbers name them.
+        // If the row names do not fit in every panel, numbers identify the rows.
         let is_nameless = sheet.panels(width).len() > 1 && sheet.names(width) < sheet.telling();
         let numbers = Column::words("number", "#");
         let columns: Vec<Column> = std::iter::once(numbers).chain(self.columns.iter().cloned()).collect();
@@ -49,11 +47,11 @@ impl Tabulation {
     }
 }
 
-/// A table as it will stand: its cells written, its columns with their widths.
+/// A table layout: formatted cells and column widths.
 struct Sheet<'a> {
     columns: &'a [Column],
     cells: Vec<Vec<String>>,
-    /// How many of them are rows; the others sum them up.
+    /// Number of rows; the remaining ones are summary rows.
     rows: usize,
     widths: Vec<usize>,
 }
@@ -81,8 +79,8 @@ impl<'a> Sheet<'a> {
         self.total() <= width
     }
 
-    /// With its widest columns of words broken, as far as it must be; where even that leaves no room for all columns, those
-    /// that name the rows, so that the others can stand after them.
+    /// Wraps the widest text columns as far as needed. If the table is still too wide, wraps those
+    /// that name the rows, so that the others fit after them.
     fn narrowed(mut self, width: usize) -> Sheet<'a> {
         let least = |at: usize| match self.columns[at].holds {
             Holds::Words => self.widths[at].min(LEAST),
@@ -106,7 +104,6 @@ impl<'a> Sheet<'a> {
         self
     }
 
-    /// With a first column that numbers the rows.
     fn numbered<'b>(self, columns: &'b [Column]) -> Sheet<'b> {
         let rows = self.rows;
         let numbered = |(at, cells): (usize, Vec<String>)| {
@@ -119,7 +116,7 @@ impl<'a> Sheet<'a> {
         Sheet { columns, cells, rows, widths }
     }
 
-    /// How many leading columns of words tell all rows apart; one if none do.
+    /// Returns how many leading text columns identify all rows; 1 if they do not.
     fn telling(&self) -> usize {
         let is_words = |at: &usize| self.columns.get(*at).is_some_and(|own| own.holds == Holds::Words);
         let words = (0..self.columns.len()).take_while(is_words).count();
@@ -131,23 +128,23 @@ impl<'a> Sheet<'a> {
         (1..=words).find(tells_apart).unwrap_or(1)
     }
 
-    /// The leading columns that name a row, if there is room beside them.
+    /// Returns the leading columns that name a row, if there is room next to them.
     fn names(&self, width: usize) -> usize {
         let telling = self.telling();
         if self.widths_of(telling) + self.widest_from(telling) <= width { telling } else { 1 }
     }
 
-    /// Width of the widest column from one on.
+    /// Returns the width of the widest column from a given one.
     fn widest_from(&self, first: usize) -> usize {
         self.widths.iter().skip(first).copied().max().unwrap_or(0)
     }
 
-    /// Columns from the first one on, with the gaps after them.
+    /// Returns the width of the first columns including gaps.
     fn widths_of(&self, count: usize) -> usize {
         self.widths.iter().take(count).map(|own| own + GAP).sum()
     }
 
-    /// Columns that stand beside each other. Those that have no room stand below, after the names of the rows again.
+    /// Splits the columns into panels. Each panel repeats the row names.
     fn panels(&self, width: usize) -> Vec<Vec<usize>> {
         let mut panels: Vec<Vec<usize>> = vec![Vec::new()];
         let mut taken = 0;
@@ -174,7 +171,7 @@ impl<'a> Sheet<'a> {
         let heads: Vec<Vec<String>> =
             panel.iter().map(|at| broken(&self.columns[*at].heading, self.widths[*at])).collect();
         let height = heads.iter().map(Vec::len).max().unwrap_or(0);
-        // Headings stand on the rule.
+        // Headings are aligned to the rule at the bottom.
         let heads: Vec<Vec<String>> =
             heads.into_iter().map(|own| [vec![String::new(); height - own.len()], own].concat()).collect();
         let mut text = self.lines(panel, &heads);
@@ -191,7 +188,7 @@ impl<'a> Sheet<'a> {
         text
     }
 
-    /// Cells of one or more lines beside each other.
+    /// Writes a row of multi-line cells.
     fn lines(&self, panel: &[usize], cells: &[Vec<String>]) -> String {
         let mut text = String::new();
         for line in 0..cells.iter().map(Vec::len).max().unwrap_or(0) {
@@ -216,8 +213,8 @@ fn longest_word(text: &str) -> usize {
     text.split(' ').map(UnicodeWidthStr::width).max().unwrap_or(0)
 }
 
-/// A text in lines no wider than that, broken at blanks; a longer word is broken behind a sign that joins its parts, else where
-/// it must be. Nothing for nothing.
+/// Wraps a text at spaces; a longer word is broken after a joining character, otherwise anywhere.
+/// Returns no lines for an empty text.
 pub(super) fn broken(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ').filter(|word| !word.is_empty()) {
@@ -243,7 +240,7 @@ fn pieces(word: &str, width: usize) -> Vec<String> {
     pieces
 }
 
-/// Adds letters to the last piece, and to new ones where it is full.
+/// Appends characters to the last piece, starting a new one when it is full.
 fn letters(part: &str, width: usize, pieces: &mut Vec<String>) {
     for letter in part.chars() {
         let mut own = [0; 4];

@@ -1,4 +1,4 @@
-//! Plays what is not known yet, on all threads, until all is done or somebody stops it.
+//! Plays runs without a stored result on all threads until all are done or the experiment is stopped.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -15,42 +15,42 @@ use crate::runner::{self, RunError, RunSpec};
 use novamind_record::folder::configuration::Configuration;
 use novamind_session::DayReport;
 
-/// What an experiment is conducted with.
+/// Resources of an experiment.
 pub struct Conduct<'a> {
     /// Scenarios and parameters.
     pub configuration: &'a Configuration,
-    /// Where results are kept; none: nowhere.
+    /// Store of results; `None`: results are not stored.
     pub store: Option<&'a ResultStore>,
-    /// Threads.
+    /// Number of threads.
     pub pool: &'a rayon::ThreadPool,
-    /// Set from outside to stop: runs under way are given up.
+    /// Stop flag; active runs are abandoned.
     pub stop: &'a AtomicBool,
-    /// Told after every run that was played.
+    /// Called after every played run.
     pub on_run: &'a (dyn Fn() + Sync),
 }
 
-/// Why an experiment has no results yet.
+/// Reason why an experiment has no results.
 #[derive(Debug)]
 pub enum ExperimentError {
-    /// A run cannot begin, or a tool refused a call.
+    /// A run could not start, or a tool rejected a call.
     Run {
         /// Arm.
         arm: String,
-        /// What happened.
+        /// Error.
         error: Box<RunError>,
     },
-    /// Results cannot be kept or read.
+    /// Results cannot be stored or read.
     Store {
-        /// The file.
+        /// Path of the file.
         path: std::path::PathBuf,
-        /// What the disk says.
+        /// Error of the file system.
         error: io::Error,
     },
-    /// Somebody stopped it.
+    /// The experiment was stopped.
     Stopped {
-        /// Runs that are kept.
+        /// Number of stored runs.
         kept: usize,
-        /// Runs of the experiment.
+        /// Number of runs in the experiment.
         of: usize,
     },
 }
@@ -61,11 +61,11 @@ impl fmt::Display for ExperimentError {
             ExperimentError::Run { arm, error } => write!(formatter, "{arm}: {error}"),
             ExperimentError::Store { path, error } => write!(
                 formatter,
-                "{}: {error}; what was kept before is safe, and the same command goes on once the file can be written",
+                "{}: {error}. Earlier results are safe. Run the same command again once the file can be written",
                 path.display()
             ),
             ExperimentError::Stopped { kept, of } => {
-                write!(formatter, "stopped: {kept} of {of} runs are kept, and the same command goes on")
+                write!(formatter, "stopped: {kept} of {of} runs are stored; the same command resumes")
             }
         }
     }
@@ -83,21 +83,21 @@ pub struct ExperimentResults {
 }
 
 impl ExperimentResults {
-    /// A figure of the runs of an arm, by seed.
+    /// Returns a figure of an arm by seed.
     pub fn of(&self, arm: usize, figure: impl Fn(&RunResult) -> f64) -> Vec<f64> {
         self.by_arm.get(arm).into_iter().flatten().map(figure).collect()
     }
 
-    /// A figure of an arm and of another under the same luck, seed by seed.
+    /// Returns pairs of a figure for two arms, by seed.
     pub fn pairs(&self, arm: usize, other: usize, figure: impl Fn(&RunResult) -> f64) -> Vec<(f64, f64)> {
         self.of(arm, &figure).into_iter().zip(self.of(other, &figure)).collect()
     }
 }
 
-/// An experiment of which it is known what is left to play.
+/// An experiment with its stored results loaded.
 pub struct Prepared<'a> {
     experiment: &'a Experiment,
-    /// Runs: their keys, by their numbers; those of the first arm first, each in the order of the seeds.
+    /// Keys of runs by number, ordered by arm, then by seed.
     keys: Vec<String>,
     /// Cash on day 0 by arm, dollars.
     start_cash: Vec<f64>,
@@ -105,10 +105,10 @@ pub struct Prepared<'a> {
 }
 
 impl Experiment {
-    /// Finds what is known already; nothing, if it is to be played afresh.
+    /// Loads stored results, or none if `fresh` is set.
     ///
     /// # Errors
-    /// An arm has no such scenario or a wrong parameter; the results cannot be read.
+    /// Fails if an arm has an unknown scenario or an invalid parameter, or if results cannot be read.
     pub fn prepare(
         &self,
         configuration: &Configuration,
@@ -128,10 +128,10 @@ impl Experiment {
         Ok(Prepared { experiment: self, keys, start_cash, known })
     }
 
-    /// What names each of its runs, by number: everything that its result depends on.
+    /// Returns the key of each run by number. A key covers everything the result depends on.
     ///
     /// # Errors
-    /// An arm has no such scenario or a wrong parameter.
+    /// Fails if an arm has an unknown scenario or an invalid parameter.
     pub fn keys(&self, configuration: &Configuration) -> Result<Vec<String>, ExperimentError> {
         Ok(self.keys_of(&self.arm_keys(configuration)?))
     }
@@ -156,12 +156,12 @@ fn in_store(store: &ResultStore, error: io::Error) -> ExperimentError {
 }
 
 impl Prepared<'_> {
-    /// Runs of some numbers that are still to be played.
+    /// Counts the runs among some numbers that have no result.
     pub fn left(&self, numbers: &[usize]) -> usize {
         self.to_play(numbers).len()
     }
 
-    /// Takes the result of a run of an arm as known: somebody found that another run is the same one.
+    /// Sets the result of a run that the caller knows to be identical to another run.
     pub fn know(&mut self, arm: usize, run: &RunResult) {
         let seeds = &self.experiment.seeds;
         let place = seeds.iter().position(|seed| *seed == run.seed);
@@ -170,7 +170,7 @@ impl Prepared<'_> {
         }
     }
 
-    /// Each run that is to be played once: its number.
+    /// Returns the numbers of the runs to play, each once.
     fn to_play(&self, numbers: &[usize]) -> Vec<usize> {
         let mut taken = BTreeSet::new();
         let is_left = |number: &&usize| {
@@ -180,15 +180,15 @@ impl Prepared<'_> {
         numbers.iter().filter(is_left).copied().collect()
     }
 
-    /// Numbers of all runs.
+    /// Returns the numbers of all runs.
     pub fn numbers(&self) -> Vec<usize> {
         (0..self.keys.len()).collect()
     }
 
-    /// Plays what is left, and gives all results.
+    /// Plays the remaining runs and returns all results.
     ///
     /// # Errors
-    /// A run cannot be played, a result cannot be kept, or somebody stopped it. What was played before is kept.
+    /// Fails if a run cannot be played, a result cannot be stored, or the experiment is stopped. Earlier results stay stored.
     pub fn conduct(self, with: &Conduct<'_>) -> Result<ExperimentResults, ExperimentError> {
         let (seeds, arms) = (self.experiment.seeds.clone(), self.experiment.arms.len());
         let all = self.numbers();
@@ -197,10 +197,10 @@ impl Prepared<'_> {
         Ok(ExperimentResults { seeds, by_arm })
     }
 
-    /// Plays what is left of the runs with these numbers, and gives their results in this order.
+    /// Plays the remaining runs with these numbers and returns their results in this order.
     ///
     /// # Errors
-    /// The same.
+    /// As for [`Prepared::conduct`].
     pub fn conduct_some(
         mut self,
         numbers: &[usize],
@@ -230,7 +230,7 @@ impl Prepared<'_> {
         Ok(numbers.iter().filter_map(|number| self.known.get(&self.keys[*number]).cloned()).collect())
     }
 
-    /// A run; none if it was given up.
+    /// Plays a run; returns `None` if it was stopped.
     fn play(&self, number: usize, with: &Conduct<'_>) -> Result<Option<RunResult>, ExperimentError> {
         let seeds = &self.experiment.seeds;
         let (at, seed) = (number / seeds.len(), seeds[number % seeds.len()]);

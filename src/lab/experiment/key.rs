@@ -1,23 +1,23 @@
-//! What names a run of an experiment: everything its result depends on.
+//! Keys of experiment runs: a hash of everything the result depends on.
 
 use super::{Arm, Wanted};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_world::MECHANICS;
 
-/// What the runs of an arm have in common.
+/// The common part of an arm's keys.
 pub(super) struct ArmKey {
-    /// Everything but the seed, as a hash that it completes.
+    /// Hasher of everything except the seed.
     hasher: blake3::Hasher,
     /// Cash on day 0, dollars.
     pub(super) start_cash: f64,
 }
 
 impl ArmKey {
-    /// The key of an arm. Its name is not part of it: the same run under another name is the same run.
+    /// Returns the key of an arm, which does not include its name.
     ///
     /// # Errors
-    /// There is no such scenario, or a parameter is wrong.
+    /// Fails if the scenario is unknown or a parameter is invalid.
     pub(super) fn of(arm: &Arm, wanted: &Wanted, configuration: &Configuration) -> Result<ArmKey, RunError> {
         let (days, cash, params) = arm.terms(configuration)?;
         let policy = &arm.policy;
@@ -36,7 +36,7 @@ impl ArmKey {
         Ok(ArmKey { hasher, start_cash: cash })
     }
 
-    /// The key of a run.
+    /// Returns the key of a run.
     pub(super) fn of_seed(&self, seed: u64) -> String {
         let mut hasher = self.hasher.clone();
         hasher.update(&seed.to_le_bytes());

@@ -1,7 +1,7 @@
-//! Arms by seeds: policies played under the same luck, in parallel, each run kept as soon as it is over.
+//! Arms by seeds: policies played on the same seeds in parallel. Each result is stored as soon as its run ends.
 //!
-//! [`Experiment::prepare`] finds what earlier commands have kept, [`Prepared::conduct`] plays the rest. A command that is
-//! stopped and given again goes on where it was, and shows what it would have shown at once.
+//! [`Experiment::prepare`] loads results of earlier commands, [`Prepared::conduct`] plays the rest. A command that was
+//! stopped and is repeated resumes and prints the same output as an uninterrupted one.
 
 mod engine;
 mod key;
@@ -26,27 +26,27 @@ use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_world::params::Params;
 
-/// One way to play that is compared with others.
+/// One condition of an experiment.
 #[derive(Debug, Clone)]
 pub struct Arm {
     /// Name in tables.
     pub name: String,
-    /// What plays.
+    /// Policy that plays.
     pub policy: Policy,
-    /// Scenario, overrides, days and cash; its seed is not used.
+    /// Scenario, overrides, days and cash; the seed is ignored.
     pub spec: RunSpec,
 }
 
 impl Arm {
-    /// A policy as its file says.
+    /// Creates an arm with the settings of the policy file.
     pub fn new(name: impl Into<String>, policy: Policy) -> Arm {
         Arm { name: name.into(), policy, spec: RunSpec::of_seed(0) }
     }
 
-    /// What its runs are played under: the last day, the cash on day 0 in dollars, and the parameters.
+    /// Returns the last day, the cash on day 0 in dollars, and the parameters of its runs.
     ///
     /// # Errors
-    /// There is no such scenario, or a parameter is wrong: its runs could not begin.
+    /// Fails if the scenario is unknown or a parameter is invalid.
     pub fn terms(&self, configuration: &Configuration) -> Result<(u32, f64, Params), RunError> {
         let run = new_run(&self.policy, &self.spec);
         let scenario = configuration.scenario(&run.scenario)?;
@@ -56,28 +56,28 @@ impl Arm {
     }
 }
 
-/// What is kept of each run beside its end and its weeks.
+/// Figures stored for each run in addition to its end and weeks.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Wanted {
-    /// A point for each day.
+    /// Whether to store a point for each day.
     pub daily: bool,
-    /// Days of which all figures are kept, hidden ones included (docs/interfaces/golden.md#figures).
+    /// Days of which all figures are stored, including hidden ones (docs/interfaces/golden.md#figures).
     pub figures_on: Vec<u32>,
 }
 
-/// Arms and the seeds they have in common.
+/// Arms and their common seeds.
 #[derive(Debug, Clone)]
 pub struct Experiment {
-    /// Arms, in the order in which they are shown.
+    /// Arms in display order.
     pub arms: Vec<Arm>,
     /// Seeds.
     pub seeds: Vec<u64>,
-    /// What is kept of each run.
+    /// Stored figures of each run.
     pub wanted: Wanted,
 }
 
 impl Experiment {
-    /// Arms over seeds; the end and the weeks of each run are kept.
+    /// Creates an experiment that stores the end and the weeks of each run.
     pub fn of(arms: Vec<Arm>, seeds: impl IntoIterator<Item = u64>) -> Experiment {
         Experiment { arms, seeds: seeds.into_iter().collect(), wanted: Wanted::default() }
     }
@@ -85,14 +85,14 @@ impl Experiment {
     /// Returns the arms that are played with the same policy, parameters, days and cash, in groups of two or more.
     ///
     /// # Errors
-    /// There is no such scenario, or a parameter is wrong.
+    /// Fails if the scenario is unknown or a parameter is invalid.
     pub fn equal_arms(&self, configuration: &Configuration) -> Result<Vec<Vec<usize>>, RunError> {
         let key = |arm: &Arm| Ok(ArmKey::of(arm, &self.wanted, configuration)?.of_seed(0));
         Ok(groups(self.arms.iter().map(key).collect::<Result<Vec<String>, RunError>>()?))
     }
 }
 
-/// Returns the places of equal items, in groups of two or more, in their order.
+/// Returns the indices of equal items in groups of two or more.
 pub fn groups<T: Ord>(items: Vec<T>) -> Vec<Vec<usize>> {
     let mut places: BTreeMap<T, Vec<usize>> = BTreeMap::new();
     items.into_iter().enumerate().for_each(|(at, item)| places.entry(item).or_default().push(at));

@@ -1,4 +1,4 @@
-//! What is kept of a run.
+//! Stored results of runs.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,59 +8,59 @@ use crate::runner::{Outcome, RunEnd};
 use novamind_record::figures::WeekFigures;
 use novamind_session::DayReport;
 
-/// What is kept of a run.
+/// The stored result of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunResult {
     /// Seed.
     pub seed: u64,
-    /// Last day the run could have had.
+    /// Last possible day of the run.
     pub days: u32,
     /// Last simulated day.
     pub day: u32,
     /// Cash on day 0, dollars.
     pub start_cash: f64,
-    /// How it ended.
+    /// Type of end.
     pub ended: RunEnd,
     /// Cash at the end, dollars.
     pub cash: f64,
     /// Active subscriptions of individuals at the end.
     pub subscribers: u32,
-    /// Seats of active companies at the end.
+    /// Seats of active enterprises at the end.
     pub seats: u32,
     /// Monthly recurring revenue at the end of the last day, dollars.
     pub mrr: f64,
-    /// Most active subscriptions of individuals at the end of a day.
+    /// Maximum of active subscriptions of individuals at the end of a day.
     pub peak_subscribers: u32,
-    /// The first day that had them.
+    /// First day with that maximum.
     pub peak_day: u32,
     /// Hash of the last state.
     pub state_hash: String,
-    /// The ends of its weeks.
+    /// Figures at the end of each week.
     pub weeks: Vec<WeekPoint>,
-    /// The ends of its days, where they were asked for.
+    /// Figures at the end of each day, if requested.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub daily: Vec<DayPoint>,
-    /// Figures of the days that were asked for.
+    /// All figures of requested days.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub figures: Vec<FigurePoint>,
 }
 
-/// The end of a week.
+/// Figures at the end of a week.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WeekPoint {
-    /// Its last day.
+    /// Last day of the week.
     pub day: u32,
     /// Cash, dollars.
     pub cash: f64,
     /// Active subscriptions of individuals.
     pub subscribers: u32,
-    /// Seats of active companies.
+    /// Seats of active enterprises.
     pub seats: u32,
     /// Monthly recurring revenue, dollars.
     pub mrr: f64,
 }
 
-/// The end of a day, and what happened on it.
+/// Figures of a day.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct DayPoint {
     /// Day.
@@ -71,13 +71,13 @@ pub struct DayPoint {
     pub mrr: f64,
     /// Active subscriptions of individuals.
     pub subscribers: u32,
-    /// Seats of active companies.
+    /// Seats of active enterprises.
     pub seats: u32,
     /// Leads of individuals.
     pub individual_leads: u32,
-    /// Leads of companies.
+    /// Leads of enterprises.
     pub enterprise_leads: u32,
-    /// Individuals who signed up.
+    /// New subscriptions of individuals.
     pub new_subscribers: u32,
     /// Cancellations of individuals.
     pub cancellations: u32,
@@ -85,9 +85,9 @@ pub struct DayPoint {
     pub payments: f64,
     /// Running costs, dollars: capacity, compute, operations, development, advertising.
     pub running_costs: f64,
-    /// Every other change of cash since the day before, dollars: purchases, prices of leads, revenue of ads.
+    /// Other changes of cash since the previous day, dollars: purchases, cost of leads, ad revenue.
     pub other: f64,
-    /// Units used.
+    /// Usage in units.
     pub usage: u64,
 }
 
@@ -98,38 +98,38 @@ pub struct FigurePoint {
     pub day: u32,
     /// Name.
     pub figure: String,
-    /// What it is split by; empty if by nothing.
+    /// Breakdown, for example a group; empty for none.
     pub group: String,
     /// Value.
     pub value: f64,
 }
 
 impl RunResult {
-    /// Whether cash ran out.
+    /// Returns whether the run ended in bankruptcy.
     pub fn is_bankrupt(&self) -> bool {
         self.ended == RunEnd::Bankruptcy
     }
 
-    /// A figure of a day that was asked for.
+    /// Returns a figure of a requested day.
     pub fn figure(&self, day: u32, figure: &str, group: &str) -> Option<f64> {
         let own = |point: &&FigurePoint| point.day == day && point.figure == figure && point.group == group;
         self.figures.iter().find(own).map(|point| point.value)
     }
 }
 
-/// Sees the days of a run.
+/// Observes the days of a run.
 pub(super) struct DayWatch {
     daily: Option<Vec<DayPoint>>,
     collector: Collector,
     peak: (u32, u32),
     start_cash: f64,
-    /// Cash at the end of the day before, dollars.
+    /// Cash at the end of the previous day, dollars.
     cash: f64,
     mrr: f64,
 }
 
 impl DayWatch {
-    /// Of a run that begins with so much cash.
+    /// Creates an observer for a run with the given starting cash.
     pub(super) fn of(wanted: &Wanted, start_cash: f64) -> DayWatch {
         let collector = match wanted.figures_on.is_empty() {
             true => Collector::idle(),
@@ -165,7 +165,7 @@ impl DayWatch {
         (self.cash, self.mrr) = (own.cash, own.mrr);
     }
 
-    /// What is kept of the run, once it is over.
+    /// Returns the result after the end of the run.
     pub(super) fn result(self, outcome: Outcome, weeks: &[WeekFigures]) -> RunResult {
         let week = |own: &WeekFigures| WeekPoint {
             day: own.day,

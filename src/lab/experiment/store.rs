@@ -1,4 +1,4 @@
-//! A file of results, a line a run. Several programs may write into it; a line that was cut off or changed is a run to play
+//! A file of results with one line per run. Several processes can write to it. A truncated or changed line is a run to play
 //! again.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::RunResult;
 
-/// Results that are kept.
+/// A file of stored results.
 #[derive(Debug)]
 pub struct ResultStore {
     path: PathBuf,
@@ -22,7 +22,7 @@ pub struct ResultStore {
 struct StoredLine<R> {
     key: String,
     result: R,
-    /// Of key and result as they are written: a line that was changed by accident is not believed.
+    /// Checksum of key and result as written, which detects accidental changes.
     sum: String,
 }
 
@@ -45,32 +45,34 @@ fn sum_of(key: &str, result: &impl Serialize) -> io::Result<String> {
 }
 
 impl ResultStore {
-    /// Opens a file of results, or begins it.
+    /// Opens or creates a file of results.
     ///
     /// # Errors
-    /// It cannot be made or written.
+    /// Fails if the file cannot be created or written.
     pub fn open(path: &Path) -> io::Result<ResultStore> {
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder)?;
         }
-        // A device or a pipe has no end, or none to read.
+        // Devices and pipes cannot be read to an end.
         if std::fs::metadata(path).is_ok_and(|found| !found.is_file()) {
-            return Err(io::Error::other("it is no file: delete it, and results are kept in a new one"));
+            return Err(io::Error::other(
+                "it is not a regular file. Delete it to store results in a new file",
+            ));
         }
         let file = OpenOptions::new().create(true).read(true).append(true).open(path)?;
         Ok(ResultStore { path: path.to_owned(), file: Mutex::new(file) })
     }
 
-    /// The file.
+    /// Returns the path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The results of these keys; of two with one key, the later. Lines that are not as they were written are
-    /// passed over.
+    /// Returns the results of these keys, the latest if there are several. Damaged lines are
+    /// skipped.
     ///
     /// # Errors
-    /// The file cannot be read.
+    /// Fails if the file cannot be read.
     pub(super) fn known(&self, keys: &BTreeSet<&str>) -> io::Result<BTreeMap<String, RunResult>> {
         let mut reader = BufReader::new(File::open(&self.path)?);
         let (mut known, mut line) = (BTreeMap::new(), Vec::new());
@@ -85,10 +87,10 @@ impl ResultStore {
         Ok(known)
     }
 
-    /// Keeps a result: its line is on the disk when this returns.
+    /// Appends a result and syncs it to disk.
     ///
     /// # Errors
-    /// The disk does not take it; the file is then as it was.
+    /// Fails if the write fails; the file is then unchanged.
     pub(super) fn keep(&self, key: &str, result: &RunResult) -> io::Result<()> {
         let stored = StoredLine::of(key, result)?;
         let mut line = serde_json::to_vec(&stored).map_err(io::Error::other)?;
@@ -113,7 +115,7 @@ fn append(file: &mut File, mut line: Vec<u8>) -> io::Result<()> {
     }
     let written = file.write_all(&line).and_then(|()| file.sync_data());
     if written.is_err() {
-        // What a full disk took of the line would stand in the way of the next one.
+        // A partial line after a full disk would corrupt the next one.
         let _ = file.set_len(end);
     }
     written

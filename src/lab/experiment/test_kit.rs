@@ -1,11 +1,10 @@
-//! An experiment of a test: played on two threads, and kept nowhere.
+//! Experiments for tests: two threads, results not stored.
 
 use std::sync::atomic::AtomicBool;
 
 use super::{Arm, Conduct, Experiment, ExperimentResults};
 use novamind_record::folder::configuration::Configuration;
 
-/// The results of arms over seeds, all played.
 pub fn played(arms: Vec<Arm>, seeds: impl IntoIterator<Item = u64>) -> ExperimentResults {
     let experiment = Experiment::of(arms, seeds);
     let configuration = Configuration::shipped();

@@ -5,7 +5,7 @@ use super::*;
 use novamind_record::folder::configuration::Configuration;
 
 fn arm(name: &str, policy: &str) -> Arm {
-    let policy = Policy::find(policy, &Configuration::shipped()).expect("a shipped policy");
+    let policy = Policy::find(policy, &Configuration::shipped()).expect("a bundled policy");
     let mut own = Arm::new(name, policy);
     own.spec.days = Some(14);
     own
@@ -15,7 +15,7 @@ fn experiment() -> Experiment {
     Experiment::of(vec![arm("idle", "P0"), arm("routine", "P1b")], 1..=3)
 }
 
-/// Conducts with results in a file: what came out and how many runs were played. `most`: stopped after so many.
+/// Conducts an experiment with results in a file; returns the results and the number of played runs. Stops after `most` runs.
 fn conduct(
     experiment: &Experiment,
     path: &Path,
@@ -56,7 +56,7 @@ fn what_is_known_is_not_played_again_and_is_the_same() {
     assert_eq!((second.expect("results"), played), (first.clone(), 0));
     let (afresh, played) = conduct(&experiment(), &path, true, 99);
     assert_eq!((afresh.expect("results"), played), (first.clone(), 6));
-    // Another name is the same arm; another day, another parameter and another figure are not.
+    // A new name keeps the key; a new day, parameter or figure changes it.
     let mut renamed = experiment();
     renamed.arms[0].name = "nothing".to_owned();
     assert_eq!(conduct(&renamed, &path, false, 99).1, 0);
@@ -66,7 +66,7 @@ fn what_is_known_is_not_played_again_and_is_the_same() {
     renamed.arms[0].spec.overrides = surges("0.0");
     assert_eq!(conduct(&renamed, &path, false, 99).1, 0, "the policy has no surges either");
     renamed.arms[0].spec.overrides = surges("0.25");
-    assert_eq!(conduct(&renamed, &path, false, 99).1, 3, "what is set by name wins");
+    assert_eq!(conduct(&renamed, &path, false, 99).1, 3, "explicit overrides take precedence");
     renamed.wanted.daily = true;
     let (daily, played) = conduct(&renamed, &path, false, 99);
     assert_eq!(played, 6);
@@ -100,7 +100,7 @@ fn a_file_that_was_cut_off_anywhere_loses_one_run_at_most() {
         let left = bytes[..cut].iter().filter(|byte| **byte == b'\n').count();
         let (results, played) = conduct(&experiment(), &path, false, 99);
         assert_eq!(results.expect("results"), whole, "cut at {cut}");
-        // A line that only lacks its end is whole.
+        // A line that lacks only its line end is complete.
         assert!(played == 6 - left || (cut + 1 == bytes.len() && played == 0), "cut at {cut}: {played}");
         let (again, played) = conduct(&experiment(), &path, false, 99);
         assert_eq!((again.expect("results"), played), (whole.clone(), 0), "cut at {cut}");

@@ -1,4 +1,4 @@
-//! The table names every draw of the world, and the world draws as the table says.
+//! Tests that the table lists every draw of the simulator with the correct distribution.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -7,7 +7,7 @@ use super::*;
 use novamind_world::params::{Params, shipped_sources};
 use novamind_world::random::{Part, Streams};
 
-/// Ways to draw from a stream.
+/// Methods that draw from a stream.
 const WAYS: [&str; 12] = [
     ".uniform(",
     ".between(",
@@ -23,7 +23,7 @@ const WAYS: [&str; 12] = [
     "word_below(",
 ];
 
-/// Draws in the text of a file, outside comments and tests. `.index()` without an argument is a position.
+/// Counts the draws in a source, excluding comments and tests. `.index()` without an argument is a position.
 fn draws_in(text: &str) -> usize {
     let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
     let lines = code.lines().filter(|line| !line.trim_start().starts_with("//"));
@@ -38,7 +38,7 @@ fn draws_in(text: &str) -> usize {
     lines.map(in_line).sum()
 }
 
-/// Files below a folder by their path, with their draws. `slice.fill(value)` is no draw.
+/// Counts the draws of the files in a folder, by path. `slice.fill(value)` is not a draw.
 fn drawing_files(folder: &Path, below: &Path, found: &mut BTreeMap<String, usize>) {
     for entry in std::fs::read_dir(folder).expect("a folder").flatten() {
         let path = entry.path();
@@ -64,12 +64,12 @@ fn every_draw_of_the_world_is_in_the_table() {
         *listed.entry((*file).to_owned()).or_default() += draws;
     }
     assert_eq!(listed, found, "left: the table, right: draws in src/world");
-    assert!(found.values().sum::<usize>() > 70, "sources are read");
+    assert!(found.values().sum::<usize>() > 70, "sources were read");
 }
 
 #[test]
 fn every_part_that_moves_a_number_is_in_the_table() {
-    // The words of a post and the name of an author touch no number.
+    // The wording of a post and the name of an author affect no numbers.
     let words = [Part::Voice, Part::PersonaTemplate];
     for part in Part::ALL.iter().filter(|part| !words.contains(part)) {
         assert!(world_draws().any(|own| own.part == *part), "{} is missing", part.name());
@@ -100,7 +100,7 @@ fn names_are_unique_and_parameters_exist() {
     assert_eq!(names.len(), count);
 }
 
-/// Draws have the moments of their law: each is as far off as chance lets it be in one of some ten thousand times.
+/// Draws have the moments of their distribution. The tolerance corresponds to a chance of about 1 in 10,000.
 #[test]
 fn the_world_draws_from_the_laws_of_the_table() {
     const DRAWS: u64 = 20_000;

@@ -1,4 +1,4 @@
-//! Draws behind new customers: who they are, how they came, how they misjudge what is on offer.
+//! Random draws of new customers: traits, channel, and misjudgment of quality.
 
 use super::law::{Law, Rounding};
 use super::world_draw::{Family, Luck, WorldDraw, group_at};
@@ -13,7 +13,7 @@ use novamind_world::random::Part;
 const TRAITS: &str = "customers/traits.rs";
 const INFINITE: f64 = f64::INFINITY;
 
-/// Leads that the example of a day expects.
+/// Expected leads of the example day.
 const EXPECTED_LEADS: f64 = 12.0;
 
 fn traits(luck: &Luck, member: usize, n: u64) -> Traits {
@@ -21,14 +21,14 @@ fn traits(luck: &Luck, member: usize, n: u64) -> Traits {
 }
 
 fn negotiator(luck: &Luck, member: usize, n: u64) -> Negotiator {
-    traits(luck, member, n).negotiator.expect("the family is that of companies")
+    traits(luck, member, n).negotiator.expect("the family is enterprises")
 }
 
 fn at_least(mean: f64, std: f64, least: f64) -> Law {
     Law::Normal { mean, std, least, most: INFINITE }
 }
 
-/// Leads of a day on which every channel gets the same budget for a group.
+/// Returns the leads of a day on which every channel has the same budget for a group.
 fn equal_budgets(params: &Params, member: usize) -> LeadFactors {
     let yields = params.starting_yields();
     let mut factors = LeadFactors::default();
@@ -38,7 +38,7 @@ fn equal_budgets(params: &Params, member: usize) -> LeadFactors {
     factors
 }
 
-/// The draws.
+/// Returns the draws.
 pub const DRAWS: &[WorldDraw] = &[
     WorldDraw {
         name: "steepness_left",
@@ -106,7 +106,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "q_min",
-        what: "least quality that a customer requires",
+        what: "lowest quality that a customer accepts at any price",
         part: Part::Traits,
         family: Family::Groups,
         keys: &["group.q_min_mean", "group.q_min_std", "customer_generation.q_min_min"],
@@ -119,7 +119,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "q_range",
-        what: "how much more quality a customer requires at its budget",
+        what: "additional quality that a customer requires at its budget",
         part: Part::Traits,
         family: Family::Groups,
         keys: &["group.q_range_mean", "group.q_range_std", "customer_generation.q_range_min"],
@@ -135,7 +135,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "usage_demand",
-        what: "what a customer wants to use, units a day and seat",
+        what: "demand of a customer, units a day and seat",
         part: Part::Traits,
         family: Family::Groups,
         keys: &["group.usage_demand_mean", "group.usage_demand_std", "customer_generation.usage_demand_min"],
@@ -148,7 +148,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "ads_quality_sensitivity",
-        what: "quality that ads of full strength cost a customer",
+        what: "quality loss of a customer at full ad strength",
         part: Part::Traits,
         family: Family::Groups,
         keys: &[
@@ -169,7 +169,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "ads_return_sensitivity",
-        what: "what ads of full strength earn, dollars a day and seat",
+        what: "ad revenue at full strength, dollars a day and seat",
         part: Part::Traits,
         family: Family::Groups,
         keys: &[
@@ -190,7 +190,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "seats",
-        what: "seats of a company",
+        what: "seats of an enterprise",
         part: Part::Traits,
         family: Family::Companies,
         keys: &["group.seat_count_min", "group.seat_count_max"],
@@ -203,7 +203,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "reply_delay_mean",
-        what: "how long a company takes to answer, mean in days, in a neutral economy",
+        what: "mean response time of an enterprise in a neutral economy, days",
         part: Part::Traits,
         family: Family::Companies,
         keys: &[
@@ -222,7 +222,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "reply_delay_std",
-        what: "how long a company takes to answer, spread in days",
+        what: "spread of an enterprise's response time, days",
         part: Part::Traits,
         family: Family::Companies,
         keys: &[
@@ -240,7 +240,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "initial_offer_factor",
-        what: "first bid of a company as a share of the most it would pay",
+        what: "first bid of an enterprise as a share of its maximum price",
         part: Part::Traits,
         family: Family::Companies,
         keys: &[
@@ -260,7 +260,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "max_negotiation_turns",
-        what: "turns that a company takes part in",
+        what: "patience of an enterprise, turns",
         part: Part::Traits,
         family: Family::Companies,
         keys: &[
@@ -282,7 +282,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "persona_pick",
-        what: "place in the list of a group's industries; all other lists of a profile alike",
+        what: "index into the list of a group's industries; the other profile lists are drawn equally",
         part: Part::Traits,
         family: Family::Groups,
         keys: &[],
@@ -295,7 +295,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "lead_count",
-        what: "leads of a group on a day; the example expects 12",
+        what: "leads of a group on a day; the example's mean is 12",
         part: Part::LeadCount,
         family: Family::One,
         keys: &[],
@@ -307,7 +307,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "lead_source",
-        what: "channel a lead came by, in their order; the example spends the same on each",
+        what: "channel of a lead, by index; the example spends the same on each",
         part: Part::LeadSource,
         family: Family::Groups,
         keys: &["channel.leads_per_1000_dollars"],
@@ -329,7 +329,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "lead_noise",
-        what: "factor by which an individual misjudges quality when it first decides",
+        what: "factor by which an individual misjudges quality at its first decision",
         part: Part::LeadNoise,
         family: Family::One,
         keys: &["quality.initial_decision_noise_min", "quality.initial_decision_noise_max"],

@@ -1,4 +1,4 @@
-//! The table of all laws, and one law with its histogram.
+//! Table of all distributions, and one distribution with its histogram.
 
 use super::histogram::Histogram;
 use super::law::{Law, Moments};
@@ -11,12 +11,11 @@ use novamind_base::notation::grouped;
 use novamind_base::statistics::Sample;
 use novamind_report::plot::LEVELS;
 
-/// Bins of a histogram.
 const BINS: usize = 40;
-/// Letters of a small histogram.
+/// Characters of a small histogram.
 const SMALL: usize = 12;
 
-/// All laws, each drawn so often for the first member of its family.
+/// Returns all distributions, each drawn `draws` times for the first member of its family.
 pub fn all_laws(luck: &Luck, draws: u64) -> Exhibit {
     let columns = vec![
         Column::words("name", "name"),
@@ -27,9 +26,9 @@ pub fn all_laws(luck: &Luck, draws: u64) -> Exhibit {
         Column::numbers("std", "sd", Measure::Number(4)),
         Column::numbers("exact_std", "exact", Measure::Number(4)),
     ];
-    let mut laws = Tabulation::new("laws", "Moments of the draws beside the exact ones", columns);
+    let mut laws = Tabulation::new("laws", "Moments of the draws and exact moments", columns);
     let columns = ["name", "parameters", "source"].map(|name| Column::words(name, name));
-    let mut sources = Tabulation::new("parameters", "Parameters, and where they come from", columns.into());
+    let mut sources = Tabulation::new("parameters", "Parameters and their sources", columns.into());
     for own in world_draws() {
         let Some((member, name)) = own.family.members(&luck.params).into_iter().next() else { continue };
         let (law, drawn) = ((own.law)(&luck.params, member), own.draws(luck, member, draws));
@@ -52,21 +51,21 @@ pub fn all_laws(luck: &Luck, draws: u64) -> Exhibit {
         ]);
     }
     let mut exhibit = Exhibit::of(
-        format!("Every distribution of the world, {} draws of each", grouped(draws as f64, 0)),
+        format!("Every distribution of the simulator, {} draws of each", grouped(draws as f64, 0)),
         laws,
     );
     exhibit.tables.push(sources);
     exhibit
-        .with_note("Draws are made by the functions of the world; exact moments follow from the law. `lab laws NAME` shows one with its histogram, `--of MEMBER` for another group or tier.")
-        .with_note("Two more streams choose words only: the wording of a post and the name of its author.")
+        .with_note("Draws use the simulator's functions; exact moments follow from the distribution. `lab distributions NAME` shows one with its histogram, `--of MEMBER` another group or tier.")
+        .with_note("Two more streams choose only words: the wording of a post and the name of its author.")
 }
 
-/// Decimals that show three digits of a spread.
+/// Returns the decimals that show three digits of a spread.
 fn decimals(spread: f64) -> usize {
     if spread > 0.0 { (2.0 - libm::floor(libm::log10(spread))).clamp(0.0, 9.0) as usize } else { 2 }
 }
 
-/// Parameters, and the files that draw.
+/// Returns the parameters and the files that draw.
 fn source(own: &WorldDraw) -> String {
     let mut files: Vec<&str> = own.sites.iter().map(|(file, _)| *file).collect();
     files.dedup();
@@ -80,21 +79,21 @@ fn small(histogram: &Histogram) -> String {
     histogram.counts.iter().map(level).collect()
 }
 
-/// One law for a member of its family: its histogram, and moments beside the exact ones and those of reference draws.
+/// Returns a distribution for one member of its family: histogram, sample moments, exact moments and moments of reference draws.
 pub fn one_law(own: &WorldDraw, (member, name): (usize, &str), luck: &Luck, draws: u64) -> Exhibit {
     let law = (own.law)(&luck.params, member);
     let drawn = own.draws(luck, member, draws);
     let columns = vec![
-        Column::words("who", "who draws"),
+        Column::words("who", "source"),
         Column::numbers("draws", "draws", Measure::Count),
         Column::numbers("mean", "mean", Measure::Number(5)),
         Column::numbers("std", "sd", Measure::Number(5)),
-        Column::numbers("mean_error", "mean off, standard errors", Measure::Number(2)),
+        Column::numbers("mean_error", "error of mean, standard errors", Measure::Number(2)),
         Column::numbers("least", "least", Measure::Number(4)),
         Column::numbers("most", "most", Measure::Number(4)),
     ];
     let mut table = Tabulation::new("moments", "", columns);
-    table.rows.push(row("the world", &drawn, &law));
+    table.rows.push(row("simulator", &drawn, &law));
     table.rows.push(row("rand_distr", &law.reference(draws), &law));
     let Moments { mean, std } = law.moments();
     let exact = [Datum::words("exact"), Datum::Missing, Datum::number(mean), Datum::number(std)];
@@ -102,8 +101,8 @@ pub fn one_law(own: &WorldDraw, (member, name): (usize, &str), luck: &Luck, draw
     let of = if name.is_empty() { String::new() } else { format!(" of {name}") };
     let mut exhibit = Exhibit::of(format!("{}{of}: {}", own.name, own.what), table);
     exhibit.graphs.push(histogram_graph(own, &Histogram::of(&drawn, BINS)));
-    exhibit.notes.push(format!("Law: {}, {}.", law.name(), law.parameters()));
-    exhibit.notes.push(format!("From: {}.", source(own)));
+    exhibit.notes.push(format!("Distribution: {}, {}.", law.name(), law.parameters()));
+    exhibit.notes.push(format!("Parameters: {}.", source(own)));
     let members: Vec<String> = own
         .family
         .members(&luck.params)
@@ -112,7 +111,7 @@ pub fn one_law(own: &WorldDraw, (member, name): (usize, &str), luck: &Luck, draw
         .filter(|name| !name.is_empty())
         .collect();
     if !members.is_empty() {
-        exhibit.notes.push(format!("--of takes {}.", members.join(", ")));
+        exhibit.notes.push(format!("Values of --of: {}.", members.join(", ")));
     }
     exhibit
 }
@@ -138,7 +137,7 @@ fn histogram_graph(own: &WorldDraw, histogram: &Histogram) -> Graph {
         .collect();
     Graph {
         title: format!("Draws of {}", own.name),
-        summary: format!("Histogram of {}; the outer bars hold the farthest thousandths too", own.what),
+        summary: format!("Histogram of {}; the outer bars include the extreme thousandths", own.what),
         across: GraphAxis { label: "value", scale: AxisScale::Linear },
         up: GraphAxis { label: "draws", scale: AxisScale::Linear },
         series: vec![Series { name: "draws".to_owned(), points }],

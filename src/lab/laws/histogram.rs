@@ -1,21 +1,21 @@
-//! How often draws fall where.
+//! Histograms of draws.
 
-/// Draws counted in bins of one width.
+/// Counts of draws in bins of equal width.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Histogram {
     /// Lower end of the first bin.
     pub from: f64,
     /// Width of a bin.
     pub width: f64,
-    /// Draws in each bin; the outer ones hold what lies beyond them.
+    /// Draws in each bin; the outer bins include everything beyond.
     pub counts: Vec<u64>,
 }
 
-/// Share of the draws beyond each end that the outer bins take in, so that a few far ones do not flatten the rest.
+/// Share of draws at each end that is merged into the outer bins, so that outliers do not flatten the rest.
 const BEYOND: f64 = 0.001;
 
 impl Histogram {
-    /// Of draws, in at most so many bins. Few values have a bin each.
+    /// Creates a histogram with at most `bins` bins. A small number of distinct values has one bin each.
     pub fn of(draws: &[f64], bins: usize) -> Histogram {
         let mut sorted: Vec<f64> = draws.iter().copied().filter(|draw| draw.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);
@@ -41,7 +41,7 @@ impl Histogram {
         Histogram { from, width, counts }
     }
 
-    /// Middle of a bin.
+    /// Returns the middle of a bin.
     pub fn middle(&self, bin: usize) -> f64 {
         self.from + (bin as f64 + 0.5) * self.width
     }

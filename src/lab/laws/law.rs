@@ -1,44 +1,44 @@
-//! The laws that the world draws from: how they are written, and their exact moments.
+//! Distributions of the simulator, their notation and exact moments.
 
 use crate::normal::normal_share;
 
-/// A law with its parameters. Ends are those to which what lies beyond is moved, not cut off.
+/// A distribution with its parameters. Values beyond an end are clamped to it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Law {
-    /// Normal, between two ends.
+    /// Normal, clamped to two ends.
     Normal {
-        /// Mean before the ends.
+        /// Mean before clamping.
         mean: f64,
-        /// Standard deviation before the ends.
+        /// Standard deviation before clamping.
         std: f64,
         /// Lower end; may be minus infinity.
         least: f64,
         /// Upper end; may be infinity.
         most: f64,
     },
-    /// Normal made whole.
+    /// Normal, rounded to whole numbers.
     WholeNormal {
-        /// Mean before.
+        /// Mean before rounding.
         mean: f64,
-        /// Standard deviation before.
+        /// Standard deviation before rounding.
         std: f64,
-        /// How it is made whole.
+        /// Rounding.
         rounding: Rounding,
         /// Lower end.
         least: f64,
     },
-    /// Exponential and an offset, between two ends.
+    /// Exponential plus an offset, clamped to two ends.
     Exponential {
         /// Mean of the exponential.
         mean: f64,
-        /// What is added.
+        /// Offset.
         offset: f64,
         /// Lower end.
         least: f64,
         /// Upper end; may be infinity.
         most: f64,
     },
-    /// Log-normal between two ends, and then times a factor.
+    /// Log-normal, clamped to two ends, then multiplied by a factor.
     LogNormal {
         /// Mean of the logarithm.
         mu: f64,
@@ -51,21 +51,21 @@ pub enum Law {
         /// Factor.
         factor: f64,
     },
-    /// Any number from low to below high alike.
+    /// Uniform from low to below high.
     Uniform {
         /// Lower end.
         low: f64,
         /// Upper end.
         high: f64,
     },
-    /// Any whole number from low to high alike, both included.
+    /// Uniform whole numbers from low to high, inclusive.
     Whole {
         /// Lower end.
         low: u32,
         /// Upper end.
         high: u32,
     },
-    /// 1 with a chance, else 0.
+    /// 1 with a probability, otherwise 0.
     Chance(f64),
     /// Poisson.
     Poisson(f64),
@@ -73,10 +73,10 @@ pub enum Law {
     Among(Vec<(f64, f64)>),
 }
 
-/// How a number is made whole.
+/// Rounding to whole numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rounding {
-    /// To the nearest one.
+    /// To the nearest.
     Nearest,
     /// Towards zero.
     Down,
@@ -92,12 +92,12 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// From the first two moments about zero.
+    /// Computes them from the first two moments about zero.
     fn of_raw(first: f64, second: f64) -> Moments {
         Moments { mean: first, std: (second - first * first).max(0.0).sqrt() }
     }
 
-    /// Of values with weights.
+    /// Computes them for values with weights.
     fn of_weighted(values: impl Iterator<Item = (f64, f64)>) -> Moments {
         let (mut total, mut first, mut second) = (0.0, 0.0, 0.0);
         for (value, weight) in values {
@@ -110,7 +110,7 @@ impl Moments {
 }
 
 impl Law {
-    /// Its name.
+    /// Returns the name.
     pub fn name(&self) -> &'static str {
         match self {
             Law::Normal { .. } => "normal",
@@ -125,7 +125,7 @@ impl Law {
         }
     }
 
-    /// Its parameters in words.
+    /// Describes the parameters.
     pub fn parameters(&self) -> String {
         let number = |value: &f64| ((value * 1e6).round() / 1e6).to_string();
         let ends = |least: &f64, most: &f64| match (least.is_finite(), most.is_finite()) {
@@ -165,7 +165,7 @@ impl Law {
         }
     }
 
-    /// Exact moments.
+    /// Returns the exact moments.
     pub fn moments(&self) -> Moments {
         match *self {
             Law::Normal { mean, std, least, most } => normal_between(mean, std, least, most),
@@ -195,7 +195,7 @@ fn density(z: f64) -> f64 {
     libm::exp(-z * z / 2.0) / (2.0 * std::f64::consts::PI).sqrt()
 }
 
-/// Moments of a normal number whose far parts are moved to the ends.
+/// Returns the moments of a normal variable clamped to two ends.
 fn normal_between(mean: f64, std: f64, least: f64, most: f64) -> Moments {
     if std <= 0.0 {
         return Moments { mean: mean.clamp(least, most), std: 0.0 };
@@ -203,7 +203,7 @@ fn normal_between(mean: f64, std: f64, least: f64, most: f64) -> Moments {
     let (low, high) = ((least - mean) / std, (most - mean) / std);
     let (below, above) = (normal_share(low), 1.0 - normal_share(high));
     let inside = 1.0 - below - above;
-    // A density times an infinite place is 0.
+    // A density times an infinite bound is 0.
     let weigh = |z: f64| if z.is_finite() { z * density(z) } else { 0.0 };
     let at_end = |end: f64, share: f64, power: f64| {
         if end.is_finite() { libm::pow(end, power) * share } else { 0.0 }
@@ -218,7 +218,7 @@ fn normal_between(mean: f64, std: f64, least: f64, most: f64) -> Moments {
     )
 }
 
-/// Moments of a normal number made whole, from the chances of the whole numbers above the lower end.
+/// Returns the moments of a rounded normal variable from the probabilities of the whole numbers above the lower end.
 fn whole_normal(mean: f64, std: f64, rounding: Rounding, least: f64) -> Moments {
     let edge = if rounding == Rounding::Nearest { 0.5 } else { 1.0 };
     let below = |whole: f64| normal_share((whole + edge - mean) / std);
@@ -243,7 +243,7 @@ fn exponential_between(mean: f64, offset: f64, least: f64, most: f64) -> Moments
     Moments { mean: start + own.mean, std: own.std }
 }
 
-/// A moment about zero of a log-normal number whose far parts are moved to the ends.
+/// Returns a moment about zero of a log-normal variable clamped to two ends.
 fn log_normal_power(power: f64, mu: f64, sigma: f64, least: f64, most: f64) -> f64 {
     let below = |value: f64, shift: f64| match value {
         value if value <= 0.0 => 0.0,
@@ -261,7 +261,7 @@ fn log_normal_power(power: f64, mu: f64, sigma: f64, least: f64, most: f64) -> f
 mod tests {
     use super::*;
 
-    /// Moments by adding up a law over the quantiles of its normal or uniform number.
+    /// Returns moments by summing over the quantiles of the underlying normal or uniform variable.
     fn summed(value: impl Fn(f64) -> f64) -> Moments {
         let steps = 400_000;
         let at = |step: u32| (f64::from(step) + 0.5) / f64::from(steps);

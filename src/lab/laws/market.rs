@@ -1,4 +1,4 @@
-//! Draws behind the market: rivals, surges, the economy, channels, what studies tell.
+//! Random draws of the market: competitors, surges, economy, channels, market studies.
 
 use super::law::Law;
 use super::world_draw::{Family, Luck, WorldDraw, group_at};
@@ -16,7 +16,7 @@ const RIVALS: &str = "market/competitors.rs";
 const SURGES: &str = "market/surges.rs";
 const DISCOVERY: &str = "market/discovery.rs";
 
-/// Day of the examples of rivals, in the second half of a run of so many days.
+/// Day of the competitor examples, in the second half of the run.
 const DAY: u32 = 300;
 const RUN: u32 = 500;
 
@@ -24,7 +24,7 @@ fn rival_chance(params: &Params) -> f64 {
     event_probability(DAY, RUN, None, params)
 }
 
-/// Size, before its growth, and share of the bank of an event that is sure to come.
+/// Returns the size (before growth) and the copied share of an event, with its probability set to 1.
 fn rival_event(luck: &Luck, n: u64) -> (f64, f64) {
     let mut stream = luck.streams.open(Part::CompetitorEvent, [n]);
     let drawn = draw_event(1.0, &luck.params.competitor, &mut stream);
@@ -35,7 +35,7 @@ fn unknown_groups() -> Vec<Group> {
     Group::all().filter(|group| !group.initially_known()).collect()
 }
 
-/// Of a surge that is sure to come.
+/// Returns a figure of a surge, with its probability set to 1.
 fn surge(luck: &Luck, n: u64, figure: fn(u32, f64) -> f64) -> f64 {
     let law = novamind_world::params::DemandSurge { probability: 1.0, ..luck.params.demand_surge.clone() };
     let day = n as u32;
@@ -47,11 +47,11 @@ fn best_yield(params: &Params, member: usize) -> f64 {
     params.starting_yields()[best_starting_channel(group, params)][group]
 }
 
-/// The draws.
+/// Returns the draws.
 pub const DRAWS: &[WorldDraw] = &[
     WorldDraw {
         name: "rival_event",
-        what: "an event of a rival on day 300 of 500",
+        what: "a competitor event on day 300 of 500",
         part: Part::CompetitorEvent,
         family: Family::One,
         keys: &["competitor.competitor_event_mean_interval", "competitor.first_half_interval_multiplier"],
@@ -65,7 +65,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "rival_size",
-        what: "quality that an event of day 300 of 500 adds to expectations, unless rivals copy more",
+        what: "quality that an event on day 300 of 500 adds to expectations, unless competitors copy more",
         part: Part::CompetitorEvent,
         family: Family::One,
         keys: &[
@@ -91,7 +91,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "rival_copy",
-        what: "share of the shared bank that rivals can copy at an event",
+        what: "share of the shared bank that competitors can copy at an event",
         part: Part::CompetitorEvent,
         family: Family::One,
         keys: &["competitor.competitor_feedback_u_min", "competitor.competitor_feedback_u_max"],
@@ -104,7 +104,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "rival_drain",
-        what: "share of a group's targeted bank that rivals copy at an event",
+        what: "share of a group's targeted bank that competitors copy at an event",
         part: Part::CompetitorEvent,
         family: Family::One,
         keys: &["competitor.competitor_segment_drain_u_min", "competitor.competitor_segment_drain_u_max"],
@@ -161,7 +161,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "group_found",
-        what: "an attempt of market research finds a group",
+        what: "success of an attempt of market research",
         part: Part::MarketResearch,
         family: Family::One,
         keys: &["market_research.market_research_discover_prob"],
@@ -175,7 +175,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "found_group",
-        what: "which of the unknown groups an attempt finds, in their order",
+        what: "group that an attempt finds, by index into the unknown groups",
         part: Part::MarketResearch,
         family: Family::One,
         keys: &[],
@@ -189,7 +189,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "index_phase",
-        what: "phase of the economic cycle on day 0, where a scenario leaves it to chance",
+        what: "phase of the economic cycle on day 0, if the scenario does not set it",
         part: Part::Macro,
         family: Family::One,
         keys: &["macro.macro_pmi_random_phase"],
@@ -199,7 +199,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "index_step",
-        what: "hidden index of the economy, from a day on which it stands at its cycle's target",
+        what: "hidden index of the economy, one day after it equals its cycle's target",
         part: Part::Macro,
         family: Family::One,
         keys: &[
@@ -223,7 +223,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "yield_change",
-        what: "leads for $1,000 of a group's best channel after its first month",
+        what: "leads per $1,000 on a group's best channel after its first month",
         part: Part::LeadRateDrift,
         family: Family::Groups,
         keys: &[
@@ -248,7 +248,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "study_error",
-        what: "error of an estimate as a share of the largest one of its level",
+        what: "error of an estimate as a share of the maximum error of its study level",
         part: Part::Insight,
         family: Family::One,
         keys: &["info_level.noise"],

@@ -1,4 +1,4 @@
-//! Every distribution that the world draws from, beside its exact law (docs/laboratory/laws-and-curves.md).
+//! Every distribution of the simulator with its exact moments (docs/laboratory/laws-and-curves.md).
 
 mod customers;
 mod exhibit;
@@ -17,7 +17,7 @@ mod complete;
 pub use exhibit::{all_laws, one_law};
 pub use world_draw::{Luck, WorldDraw};
 
-/// All draws of the world, in the order of its parts.
+/// Returns all draws of the simulator in the order of its parts.
 pub fn world_draws() -> impl Iterator<Item = &'static WorldDraw> {
     let parts = [product::DRAWS, customers::DRAWS, retention::DRAWS, market::DRAWS, social::DRAWS];
     parts.into_iter().flatten()

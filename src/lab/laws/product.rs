@@ -1,4 +1,4 @@
-//! Draws behind the product: service, development, R&D, usage.
+//! Random draws of the product: service, development, R&D, usage.
 
 use super::law::{Law, Rounding};
 use super::world_draw::{Family, WorldDraw, group_at};
@@ -16,7 +16,7 @@ fn chance_of_outage(params: &Params) -> f64 {
     outage_probability(0.0, 0.0, &params.operations)
 }
 
-/// The draws.
+/// Returns the draws.
 pub const DRAWS: &[WorldDraw] = &[
     WorldDraw {
         name: "outage",
@@ -90,7 +90,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "quality_noise",
-        what: "what a day adds to shared quality by chance",
+        what: "daily random change of shared quality",
         part: Part::QualityNoise,
         family: Family::One,
         keys: &["development.quality_shared_noise_scale"],

@@ -1,4 +1,4 @@
-//! The same laws drawn by another hand: `rand_distr`, from a generator of its own.
+//! Reference draws of the same distributions with `rand_distr` and a separate generator.
 
 use rand::distr::Distribution;
 use rand::{RngExt, SeedableRng};
@@ -7,11 +7,10 @@ use rand_distr::{Exp, LogNormal, Normal, Poisson};
 
 use super::law::{Law, Rounding};
 
-/// Seed of the generator of references.
 const SEED: u64 = 20_000;
 
 impl Law {
-    /// So many draws of the law.
+    /// Returns a number of draws from the distribution.
     pub fn reference(&self, count: u64) -> Vec<f64> {
         let mut rng = ChaCha8Rng::seed_from_u64(SEED);
         let mut many = |draw: &dyn Fn(&mut ChaCha8Rng) -> f64| (0..count).map(|_| draw(&mut rng)).collect();

@@ -1,4 +1,4 @@
-//! Draws behind keeping customers: support, failed payments, damaged reputation, negotiations.
+//! Random draws of retention: support, failed payments, reputation damage, negotiations.
 
 use super::law::{Law, Rounding};
 use super::world_draw::{Family, WorldDraw, group_at};
@@ -13,21 +13,21 @@ use novamind_world::retention::renewal::{involuntary_rate, payment_rolls};
 const RENEWAL: &str = "retention/renewal.rs";
 const SUPPORT: &str = "retention/support_budget.rs";
 
-/// Issues that the example of a pool solves on a day in the mean, and how many wait.
+/// Mean issues that the example pool resolves a day, and its backlog.
 const SOLVED: f64 = 3.0;
 const WAITING: usize = 8;
-/// Satisfaction of the example that opens an issue.
+/// Satisfaction of the example customer who opens an issue.
 const CONTENT: f64 = 0.5;
 
 fn issue_chance(params: &Params) -> f64 {
     issue_probability(CONTENT, false, 1.0, &params.issues)
 }
 
-/// The draws.
+/// Returns the draws.
 pub const DRAWS: &[WorldDraw] = &[
     WorldDraw {
         name: "issues_solved",
-        what: "issues that a pool of support can solve on a day; the example can solve 3",
+        what: "issues that a support pool can resolve on a day; the example's mean is 3",
         part: Part::IssueResolution,
         family: Family::One,
         keys: &["issues.issue_resolution_base_rate"],
@@ -39,7 +39,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "issue_picked",
-        what: "which of the waiting issues is solved next; in the example 8 wait",
+        what: "open issue that is resolved next, by index; the example's backlog is 8",
         part: Part::IssueResolution,
         family: Family::One,
         keys: &[],
@@ -51,7 +51,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "issue_opened",
-        what: "an issue on a day; the example has satisfaction 0.5, and there is no outage",
+        what: "a new issue on a day; the example has satisfaction 0.5 and no outage",
         part: Part::IssueOpening,
         family: Family::One,
         keys: &[
@@ -71,7 +71,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "involuntary_rate",
-        what: "share of payments of a group that fail for good in a month",
+        what: "share of a group's payments that fail permanently in a month",
         part: Part::InvoluntaryMu,
         family: Family::Individuals,
         keys: &[
@@ -99,14 +99,14 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "payment_fails",
-        what: "a payment that fails for good, at the mean rate of the group",
+        what: "a payment that fails permanently, at the group's mean rate",
         part: Part::InvoluntaryRoll,
         family: Family::Individuals,
         keys: &["group.involuntary_churn_mean"],
         sites: &[(RENEWAL, 2)],
         law: |params, member| Law::Chance(params.group(group_at(member)).involuntary_churn_mean),
         draw: |luck, member, n| {
-            // Customers of one place of their blocks, day after day.
+            // Customers at one position of their blocks, day after day.
             let group = group_at(member);
             let (number, day) = ((n % 97) as u32, (n / 97) as u32);
             let word = payment_rolls(group, number, day, &luck.streams)[n as usize % BLOCK as usize];
@@ -115,7 +115,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "reputation_damage",
-        what: "what somebody content who leaves a group of two costs its reputation",
+        what: "reputation loss when a satisfied customer leaves a group of two",
         part: Part::ReputationEvent,
         family: Family::One,
         keys: &["reputation.reputation_quality_cancel_damage", "reputation.cancel_damage_noise_offset"],
@@ -131,7 +131,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "negotiation_noise",
-        what: "factor by which a company misjudges quality in its first negotiation",
+        what: "factor by which an enterprise misjudges quality in its first negotiation",
         part: Part::NegotiationNoise,
         family: Family::One,
         keys: &["quality.initial_decision_noise_min", "quality.initial_decision_noise_max"],
@@ -149,7 +149,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "reply_delay",
-        what: "days until a company with its group's mean manner answers an offer",
+        what: "days until an enterprise with its group's mean response time answers an offer",
         part: Part::ReplyDelay,
         family: Family::Companies,
         keys: &["group.reply_delay_mean", "group.reply_delay_std", "enterprise.reply_delay_min_days"],
@@ -172,7 +172,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "plan_change",
-        what: "a company asks for a better plan on a day on which there is one",
+        what: "an enterprise asks for a better plan on a day on which there is one",
         part: Part::PlanChange,
         family: Family::One,
         keys: &["enterprise.plan_change_probability"],

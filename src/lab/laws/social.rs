@@ -1,4 +1,4 @@
-//! Draws behind the feed: who posts, in what tone, how far it carries, what the press makes of it.
+//! Random draws of the social feed: authors, tone, reach, press coverage.
 
 use super::law::Law;
 use super::world_draw::{Family, Luck, WorldDraw};
@@ -14,9 +14,9 @@ const ENGAGEMENT: &str = "market/social/engagement.rs";
 const PRESS: &str = "market/social/press.rs";
 const REACH: &str = "market/social/reach.rs";
 
-/// Mood of the example of a tone.
+/// Satisfaction of the example author.
 const MOOD: f64 = 0.1;
-/// Subscribers of the example that somebody is picked of.
+/// Number of subscribers in the example.
 const SUBSCRIBERS: usize = 100;
 
 fn post(luck: &Luck, n: u64) -> novamind_world::random::Stream {
@@ -27,11 +27,11 @@ fn whole(luck: &Luck, part: Part, n: u64, (low, high): (u32, u32)) -> f64 {
     f64::from(luck.streams.open(part, [n]).integer(low, high))
 }
 
-/// The draws.
+/// Returns the draws.
 pub const DRAWS: &[WorldDraw] = &[
     WorldDraw {
         name: "post_clock",
-        what: "when the next of a crowd with a weight of 1 wants to post: the first ones do",
+        what: "time to the next post of a crowd with a total weight of 1; the earliest posts appear",
         part: Part::CustomerPosts,
         family: Family::One,
         keys: &[],
@@ -41,7 +41,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "post_author",
-        what: "place of the author among the weights of the crowd, and of the cause among what annoys",
+        what: "position of the author in the crowd's weights, and of the cause in the weights of complaints",
         part: Part::CustomerPosts,
         family: Family::One,
         keys: &[],
@@ -51,7 +51,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "post_tone",
-        what: "tone of a post (1 positive, 0 neutral, -1 negative) of somebody with satisfaction 0.1",
+        what: "tone of a post (1 positive, 0 neutral, -1 negative) of an author with satisfaction 0.1",
         part: Part::CustomerPosts,
         family: Family::One,
         keys: &["social.sentiment"],
@@ -69,7 +69,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "post_likes",
-        what: "likes of a customer's post before its tone counts",
+        what: "likes of a customer's post before the effect of tone",
         part: Part::CustomerPosts,
         family: Family::Groups,
         keys: &["social.individual_likes_low", "social.individual_likes_high_exclusive"],
@@ -86,7 +86,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "post_shares",
-        what: "shares of a customer's post before its tone counts",
+        what: "shares of a customer's post before the effect of tone",
         part: Part::CustomerPosts,
         family: Family::Groups,
         keys: &["social.individual_shares_low", "social.individual_shares_high_exclusive"],
@@ -103,7 +103,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "post_factor",
-        what: "uniform part of the reach of a customer's post, and the three of an explosion",
+        what: "uniform part of the reach of a customer's post, and the three of a viral post",
         part: Part::CustomerPosts,
         family: Family::One,
         keys: &["social.virality_positive_range", "social.virality_neutral_range"],
@@ -126,7 +126,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "press_error",
-        what: "size of an event of size 1 as the press sees it",
+        what: "size that the press reports for an event of size 1",
         part: Part::CompetitorPosts,
         family: Family::One,
         keys: &["competitor.competitor_post_boost_noise_min", "competitor.competitor_post_boost_noise_max"],
@@ -146,7 +146,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "rival_name",
-        what: "which rival the press writes about, in their order",
+        what: "competitor that the press writes about, by index",
         part: Part::CompetitorPosts,
         family: Family::One,
         keys: &["competitor.competitor_names"],
@@ -159,7 +159,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "rival_perspective",
-        what: "point of view of a post on a rival",
+        what: "point of view of a post on a competitor",
         part: Part::CompetitorPosts,
         family: Family::One,
         keys: &["competitor.post_perspective_count"],
@@ -172,7 +172,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "press_reach",
-        what: "uniform parts of views, likes and shares of a post of the press",
+        what: "uniform parts of views, likes and shares of a press post",
         part: Part::CompetitorPosts,
         family: Family::One,
         keys: &[],
@@ -229,7 +229,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "own_post_views",
-        what: "luck of a player's post: factor on its expected views",
+        what: "random factor on the expected views of a player's post",
         part: Part::CeoViews,
         family: Family::One,
         keys: &["ceo_posts.views_noise_lognormal_mu", "ceo_posts.views_noise_lognormal_sigma"],
@@ -282,7 +282,7 @@ pub const DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "comment_author",
-        what: "which subscriber of a group comments on a player's post; the example has 100",
+        what: "subscriber of a group who comments on a player's post, by index; the example has 100",
         part: Part::CeoReply,
         family: Family::One,
         keys: &[],

@@ -1,4 +1,4 @@
-//! A draw of the world: what it is, its law under the parameters in force, and how the world itself makes it.
+//! Definition of a draw: description, distribution under the current parameters, and the simulator's function for it.
 
 use super::law::Law;
 use novamind_base::nearest;
@@ -6,39 +6,39 @@ use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 use novamind_world::random::{Part, Streams};
 
-/// What the world draws with.
+/// Parameters and streams of the draws.
 #[derive(Debug)]
 pub struct Luck {
-    /// Parameters in force.
+    /// Current parameters.
     pub params: Params,
-    /// Streams.
+    /// Random streams.
     pub streams: Streams,
 }
 
 impl Luck {
-    /// The luck of a seed.
+    /// Creates the parameters and streams of a seed.
     pub fn of(params: Params, seed: u64) -> Luck {
         Luck { params, streams: Streams::new(seed) }
     }
 }
 
-/// What a draw is made for each of.
+/// The family of items that have separate draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Family {
-    /// Nothing: it is one.
+    /// A single draw.
     One,
     /// Groups.
     Groups,
     /// Groups of individuals.
     Individuals,
-    /// Groups of companies.
+    /// Groups of enterprises.
     Companies,
     /// R&D tiers.
     ResearchTiers,
 }
 
 impl Family {
-    /// Names of its members with their numbers: positions of groups, numbers of tiers.
+    /// Returns the members: positions of groups or numbers of tiers, with names.
     pub fn members(self, params: &Params) -> Vec<(usize, String)> {
         let groups = |wanted: &dyn Fn(&Group) -> bool| {
             let own = Group::all().filter(|group| wanted(group));
@@ -57,44 +57,44 @@ impl Family {
     }
 }
 
-/// A draw of the world.
+/// A random draw of the simulator.
 #[derive(Debug)]
 pub struct WorldDraw {
     /// Name.
     pub name: &'static str,
-    /// What is drawn, with its unit.
+    /// Description with unit.
     pub what: &'static str,
-    /// Part whose streams it is drawn from.
+    /// Part of the simulator whose streams it uses.
     pub part: Part,
-    /// What it is drawn for each of.
+    /// Family.
     pub family: Family,
-    /// Parameters it follows from.
+    /// Parameters that it depends on.
     pub keys: &'static [&'static str],
-    /// Files below `src/world` that draw it, with how many draws of theirs it covers.
+    /// Files below `src/world` that draw it, with the number of draws.
     pub sites: &'static [(&'static str, usize)],
-    /// Its law for a member of the family.
+    /// Distribution for a member of the family.
     pub law: fn(&Params, usize) -> Law,
-    /// Its n-th draw for a member, by the functions of the world.
+    /// Returns the n-th draw for a member with the simulator's functions.
     pub draw: fn(&Luck, usize, u64) -> f64,
 }
 
 impl WorldDraw {
-    /// The draw of a name.
+    /// Returns the draw with a name.
     ///
     /// # Errors
-    /// There is none: the names that look most like it.
+    /// Returns the most similar names if there is none.
     pub fn find(name: &str) -> Result<&'static WorldDraw, Vec<&'static str>> {
         let found = super::world_draws().find(|own| own.name == name);
         found.ok_or_else(|| nearest(name, super::world_draws().map(|own| own.name)))
     }
 
-    /// The first so many draws for a member.
+    /// Returns the first draws for a member.
     pub fn draws(&self, luck: &Luck, member: usize, count: u64) -> Vec<f64> {
         (1..=count).map(|n| (self.draw)(luck, member, n)).collect()
     }
 }
 
-/// The group at a position.
+/// Returns the group at a position.
 pub(super) fn group_at(position: usize) -> Group {
     Group::at(position).unwrap_or_else(|| Group::all().next().expect("there are groups"))
 }

@@ -4,7 +4,7 @@ use super::{Daily, Day, Kind, by_group, initial, now, push, sum};
 use novamind_world::events::{DealClosed, EndCause, Notice, Post, Sentiment, SubscriptionStatus, ThreadKind};
 use novamind_world::identifiers::{Group, Plan};
 
-/// What is averaged over deals.
+/// A value that is averaged over deals.
 type PerDeal = fn(&DealClosed) -> f64;
 
 impl Day<'_> {
@@ -88,7 +88,7 @@ impl Day<'_> {
         for kind in ThreadKind::ALL {
             let begun = facts.turns.iter().filter(|turn| turn.number == 0);
             let opened = match kind {
-                // The player's own threads begin between two days and are counted with the next one.
+                // Threads that the player started between two days count for the next day.
                 ThreadKind::Renegotiation => f64::from(self.threads_opened) - begun.count() as f64,
                 _ => begun.filter(|turn| turn.kind == kind).count() as f64,
             };

@@ -1,4 +1,4 @@
-//! Figures of a run, day by day, hidden ones included (docs/interfaces/golden.md#figures).
+//! Daily figures of a run, including hidden ones (docs/interfaces/golden.md#figures).
 
 mod market;
 
@@ -16,24 +16,24 @@ pub struct Figure {
     pub day: u32,
     /// Name.
     pub figure: &'static str,
-    /// What it is split by; empty if by nothing.
+    /// Breakdown, for example a group; empty for none.
     pub group: &'static str,
     /// Value.
     pub value: f64,
 }
 
-/// How daily values become a figure.
+/// Aggregation of daily values into a figure.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
-    /// The value at the end of the day.
+    /// Value at the end of the day.
     Now,
-    /// The sum over all days so far.
+    /// Sum over all days so far.
     Sum,
-    /// The mean over the last 30 days.
+    /// Mean over the last 30 days.
     Month,
-    /// The sum over all days so far per unit of a weight, for instance per deal.
+    /// Sum over all days so far divided by the sum of a weight, for example per deal.
     Mean {
-        /// The weight of today.
+        /// Weight of the day.
         weight: f64,
     },
 }
@@ -42,23 +42,23 @@ struct Daily {
     figure: &'static str,
     group: &'static str,
     kind: Kind,
-    /// None where it does not exist, for instance a mean over nobody.
+    /// `None` if undefined, for example a mean over no customers.
     value: Option<f64>,
 }
 
 /// Collects the figures of a run.
 #[derive(Default)]
 pub struct Collector {
-    /// Days whose figures are kept; none: all.
+    /// Days whose figures are kept; `None`: all.
     wanted: Option<Vec<u32>>,
     sums: Vec<f64>,
     weights: Vec<f64>,
     windows: Vec<VecDeque<f64>>,
-    /// Counts that only exist as sums.
+    /// Counts that exist only as sums.
     open_issues: f64,
-    /// Cancellations of companies by the day on which their subscription ends, which may be still to come.
+    /// Cancellations of enterprises by the day on which the subscription ends, which can be in the future.
     endings: BTreeMap<u32, ByGroup<f64>>,
-    /// Number of the next thread, a day before.
+    /// Number of the next thread on the previous day.
     next_thread: u32,
     figures: Vec<Figure>,
     last_day: u32,
@@ -67,17 +67,17 @@ pub struct Collector {
 }
 
 impl Collector {
-    /// Collects nothing: for runs whose figures nobody asks for.
+    /// Creates a collector that collects nothing.
     pub fn idle() -> Collector {
         Collector { idle: true, ..Collector::default() }
     }
 
-    /// Collects the figures of all days, or of these.
+    /// Creates a collector for all days or for the given ones.
     pub fn new(wanted: Option<Vec<u32>>) -> Collector {
         Collector { wanted, ..Collector::default() }
     }
 
-    /// Takes a day in.
+    /// Adds a day.
     pub fn day(&mut self, report: &DayReport<'_>) {
         let Some(xray) = report.xray.filter(|_| !self.idle) else { return };
         self.last_day = report.figures.day;
@@ -126,7 +126,7 @@ impl Collector {
         }
     }
 
-    /// All figures; after a bankruptcy the days up to `until` say only that the company is gone.
+    /// Returns all figures. After a bankruptcy, the days up to `until` contain only the bankruptcy.
     pub fn finish(mut self, until: u32) -> Vec<Figure> {
         if let Some(bankrupt) = self.bankrupt {
             for day in self.last_day + 1..=until {
@@ -141,7 +141,7 @@ impl Collector {
     }
 }
 
-/// The groups that figures are split by one by one.
+/// Returns the groups with separate figures.
 fn initial() -> impl Iterator<Item = Group> {
     Group::all().filter(|group| group.initially_known())
 }
@@ -150,9 +150,9 @@ struct Day<'a> {
     report: &'a DayReport<'a>,
     xray: Xray<'a>,
     open_issues: f64,
-    /// Companies whose subscription ends today.
+    /// Returns the enterprises whose subscription ends on the day.
     companies_left: ByGroup<f64>,
-    /// Threads of all kinds since the day before, the player's own included.
+    /// Returns the new threads of all kinds since the previous day, including the player's.
     threads_opened: u32,
 }
 
@@ -161,7 +161,7 @@ fn company_left(ending: &SubscriptionEnded) -> bool {
 }
 
 impl Day<'_> {
-    /// Values of the day in the order of the table in docs/interfaces/golden.md#figures.
+    /// Returns the values of the day in the order of docs/interfaces/golden.md#figures.
     fn values(&self) -> Vec<Daily> {
         let mut list = Vec::with_capacity(220);
         self.company(&mut list);
@@ -362,7 +362,7 @@ fn month(list: &mut Vec<Daily>, figure: &'static str, value: f64) {
     push(list, figure, "", Kind::Month, Some(value));
 }
 
-/// One value per initial group, and the sums over the discoverable individual and enterprise groups.
+/// Returns one value per initial group, and sums over the discoverable individual and enterprise groups.
 fn by_group(list: &mut Vec<Daily>, figure: &'static str, kind: Kind, value: impl Fn(Group) -> f64) {
     for group in initial() {
         push(list, figure, group.id(), kind, Some(value(group)));

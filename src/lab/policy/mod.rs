@@ -15,12 +15,12 @@ use super::answers::EnterpriseRule;
 use novamind_record::folder::configuration::Configuration;
 use novamind_world::params::ParameterSource;
 
-/// What drives a run without a person.
+/// A program that plays a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Policy {
     /// Name.
     pub name: String,
-    /// What it does.
+    /// Description.
     pub description: String,
     /// Start of the run; the command line overrides it.
     pub start: Start,
@@ -28,7 +28,7 @@ pub struct Policy {
     pub rule_based: Option<RuleBased>,
     /// Calls of tools on given days.
     pub calls: Vec<ScheduledCall>,
-    /// Answers to companies.
+    /// Answers to enterprises.
     pub enterprise: Option<EnterpriseRule>,
 }
 
@@ -38,7 +38,7 @@ pub struct Policy {
 pub struct Start {
     /// Cash on day 0, dollars.
     pub cash: Option<f64>,
-    /// Demand surges; absent: as the scenario says.
+    /// Demand surges; `None`: from the scenario.
     pub surges: Option<bool>,
     /// Scenario.
     pub scenario: Option<String>,
@@ -53,20 +53,20 @@ pub struct ScheduledCall {
     pub day: u32,
     /// Tool.
     pub tool: String,
-    /// Arguments; symbols are resolved when the call is made.
+    /// Arguments. Symbols are resolved at call time.
     pub arguments: serde_json::Value,
-    /// So often on each of its days.
+    /// Number of calls on each of its days.
     pub repeat: u32,
-    /// Again every so many weeks; none: once.
+    /// Interval of repetition in weeks; `None`: once.
     pub every_weeks: Option<u32>,
-    /// Last day, included.
+    /// Last day, inclusive.
     pub until_day: Option<u32>,
-    /// A refusal does not stop the run.
+    /// Whether a rejection is ignored instead of stopping the run.
     pub may_fail: bool,
 }
 
 impl ScheduledCall {
-    /// Whether the call is made on a decision day.
+    /// Returns whether the call is made on a decision day.
     pub fn is_due(&self, day: u32) -> bool {
         if day < self.day || self.until_day.is_some_and(|last| day > last) {
             return false;
@@ -111,16 +111,16 @@ fn once() -> u32 {
     1
 }
 
-/// What is wrong with a policy file, and where.
+/// A problem in a policy file and its location.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PolicyError {
     /// File.
     pub source: String,
-    /// Line, where it is known.
+    /// Line, if known.
     pub line: Option<usize>,
-    /// What is wrong.
+    /// Problem.
     pub problem: String,
-    /// There is nothing of the name that was asked for.
+    /// Whether no file of the requested name exists.
     pub is_unknown: bool,
 }
 
@@ -136,11 +136,11 @@ impl fmt::Display for PolicyError {
 impl std::error::Error for PolicyError {}
 
 impl Policy {
-    /// A policy by name (this person's directory first, then the shipped ones) or by path: anything with a
+    /// Returns a policy by name (the user's folder first, then the bundled ones) or by path: anything with a
     /// separator, or ending in .toml.
     ///
     /// # Errors
-    /// There is none, or it is wrong.
+    /// Fails if the policy does not exist or is invalid.
     pub fn find(name: &str, configuration: &Configuration) -> Result<Policy, PolicyError> {
         let wrong =
             |problem: String| PolicyError { source: name.to_owned(), line: None, problem, is_unknown: false };
@@ -162,16 +162,16 @@ impl Policy {
                 let mut known: Vec<String> =
                     novamind_assets::policies().into_iter().map(|(name, _)| name.to_owned()).collect();
                 known.extend(configuration.names("policies"));
-                let problem = format!("there is no such policy; there are {}", known.join(", "));
+                let problem = format!("unknown policy; available: {}", known.join(", "));
                 Err(PolicyError { is_unknown: true, ..wrong(problem) })
             }
         }
     }
 
-    /// Reads a policy file.
+    /// Parses a policy file.
     ///
     /// # Errors
-    /// Unknown keys, a day that is no decision day, unknown tools or arguments, and what contradicts itself.
+    /// Fails on unknown keys, days that are not decision days, unknown tools or arguments, and contradictions.
     pub fn parse(source: &ParameterSource) -> Result<Policy, PolicyError> {
         let at = |span: Option<std::ops::Range<usize>>, problem: String| PolicyError {
             source: source.name.clone(),
@@ -205,7 +205,7 @@ impl Policy {
         }
         let (name, description) = (file.name, file.description);
         if name.trim().is_empty() || name.chars().any(char::is_control) {
-            return Err(at(None, "a policy has a name of one line".to_owned()));
+            return Err(at(None, "the name of a policy must be one line of text".to_owned()));
         }
         Ok(Policy { name, description, start: file.start, rule_based, calls, enterprise })
     }
@@ -213,13 +213,13 @@ impl Policy {
 
 fn scheduled(entry: CallEntry) -> Result<ScheduledCall, String> {
     if !entry.day.is_multiple_of(7) {
-        return Err(format!("day {} is no decision day; those are 0, 7, 14, …", entry.day));
+        return Err(format!("day {} is not a decision day; use 0, 7, 14, …", entry.day));
     }
     if entry.until_day.is_some() && entry.every_weeks.is_none() {
         return Err("until_day needs every_weeks".to_owned());
     }
     if entry.every_weeks == Some(0) || entry.repeat == 0 {
-        return Err("every_weeks and repeat are at least 1".to_owned());
+        return Err("every_weeks and repeat must be at least 1".to_owned());
     }
     let tool = novamind_tools::find(&entry.tool)
         .filter(|tool| tool.spec().kind != novamind_tools::Kind::Time)
@@ -230,7 +230,7 @@ fn scheduled(entry: CallEntry) -> Result<ScheduledCall, String> {
             } else {
                 format!("; did you mean {}?", near.join(" or "))
             };
-            format!("there is no tool {} for policies{help}", entry.tool)
+            format!("unknown tool {} for policies{help}", entry.tool)
         })?;
     let arguments = serde_json::to_value(&entry.args).map_err(|error| error.to_string())?;
     novamind_tools::Arguments::of(tool.spec(), &arguments, || novamind_tools::Numbers::shipped().into())
@@ -265,7 +265,7 @@ mod tests {
     fn all_shipped_policies_are_read() {
         let configuration = Configuration::shipped();
         for (name, _) in novamind_assets::policies() {
-            let policy = Policy::find(name, &configuration).expect("a shipped policy");
+            let policy = Policy::find(name, &configuration).expect("a bundled policy");
             assert_eq!(policy.name, name);
             assert!(!policy.description.is_empty());
             let surges = (!STRONG.contains(&name)).then_some(name == "P1s");

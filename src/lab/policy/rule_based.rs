@@ -1,25 +1,25 @@
-//! The weekly routine of the paper's baseline, as a policy file has it (docs/interfaces/policies.md).
+//! Settings of the paper's weekly routine in a policy file (docs/interfaces/policies.md).
 
 use serde::Deserialize;
 
 use novamind_world::identifiers::Plan;
 
-/// The cash floor that never stops the spending.
+/// Cash floor that never stops spending.
 const ALWAYS: f64 = -1.0;
 
-/// The weekly routine; every key has the value of the paper's best configuration unless it is given.
+/// Settings of the weekly routine. The defaults are the paper's best configuration.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RuleBased {
     /// Prices, tiers and quotas.
     pub price_book: PriceBook,
-    /// Groups that get development and ads.
+    /// Groups that receive development and ads.
     pub target: Target,
     /// Budgets of the target groups.
     pub spend: Spend,
-    /// Spending is on while cash is above this, dollars; -1: always.
+    /// Cash above which spending is on, dollars; -1: always.
     pub cash_floor: f64,
-    /// General development while on, dollars a day.
+    /// General development while spending is on, dollars a day.
     pub global_development: f64,
     /// Operations.
     pub operations: OperationsRule,
@@ -42,10 +42,10 @@ impl Default for RuleBased {
 }
 
 impl RuleBased {
-    /// The routine, if its amounts can be paid.
+    /// Returns the routine if its amounts are valid.
     ///
     /// # Errors
-    /// The key whose amount is none.
+    /// Names the key with an invalid amount.
     pub(super) fn checked(self) -> Result<RuleBased, String> {
         let amounts = |spend: &Spend| {
             let (s1, s3) = spend.budgets();
@@ -57,14 +57,14 @@ impl RuleBased {
         };
         let is_amount = |dollars: &f64| dollars.is_finite() && *dollars >= 0.0;
         if self.cash_floor != ALWAYS && !is_amount(&self.cash_floor) {
-            return Err(format!("`cash_floor` is dollars, or -1 for always, not {}", self.cash_floor));
+            return Err(format!("`cash_floor` must be dollars, or -1 for always, not {}", self.cash_floor));
         }
         let wrong = [("global_development", self.global_development), ("operations", fixed)]
             .into_iter()
             .chain(amounts(&self.spend).map(|dollars| ("spend", dollars)))
             .find(|(_, dollars)| !is_amount(dollars));
         match wrong {
-            Some((key, dollars)) => Err(format!("`{key}` is dollars a day, not {dollars}")),
+            Some((key, dollars)) => Err(format!("`{key}` must be dollars a day, not {dollars}")),
             None => Ok(self),
         }
     }
@@ -74,9 +74,9 @@ impl RuleBased {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(untagged, expecting = "price_book must be cheap, mid or a table of prices, tiers and quotas by plan")]
 pub enum PriceBook {
-    /// A book of the paper.
+    /// A price book of the paper.
     Named(BookName),
-    /// One of the policy's own.
+    /// Custom values.
     Own {
         /// Dollars a month.
         prices: PerPlan<f64>,
@@ -142,7 +142,7 @@ impl PriceBook {
     }
 }
 
-/// Groups that get development and ads.
+/// Groups that receive development and ads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Target {
@@ -150,7 +150,7 @@ pub enum Target {
     S1Only,
     /// S1, and S3 from day 30 on.
     S1ThenS3,
-    /// None.
+    /// No groups.
     None,
 }
 
@@ -160,7 +160,7 @@ pub enum Target {
 pub enum Spend {
     /// A package of the paper.
     Named(SpendName),
-    /// Budgets of the policy's own.
+    /// Custom budgets.
     Own {
         /// S1.
         #[serde(rename = "S1")]
@@ -208,7 +208,7 @@ impl Spend {
     }
 }
 
-/// How much operations get.
+/// Rule for the operations budget.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(untagged, expecting = "operations must be subscribers or an amount of dollars a day")]
 pub enum OperationsRule {
@@ -222,16 +222,16 @@ pub enum OperationsRule {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OperationsName {
-    /// With the subscribers.
+    /// Proportional to subscribers.
     Subscribers,
 }
 
-/// How capacity follows usage.
+/// Rule for capacity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CapacityRule {
-    /// One tier a week towards the smallest that holds the week's usage at 80 %.
+    /// Moves one tier a week towards the smallest tier that serves the week's usage at 80 % utilization.
     Utilisation,
-    /// The tier is never touched.
+    /// Never changes the tier.
     Fixed,
 }

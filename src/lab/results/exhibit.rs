@@ -6,7 +6,7 @@ use crate::exhibit::{
 };
 
 impl ResultsTable {
-    /// The table, and the best runs as bars.
+    /// Returns the table and a bar graph of the best runs.
     pub fn exhibit(&self) -> Exhibit {
         let columns = vec![
             Column::words("name", "who"),
@@ -23,7 +23,7 @@ impl ResultsTable {
         ];
         let rows = self.rows.iter().map(cells).collect();
         let table = Tabulation { rows, ..Tabulation::new("results", "", columns) };
-        let mut exhibit = Exhibit::of("Own runs beside the published results", table);
+        let mut exhibit = Exhibit::of("Own runs and published results", table);
         exhibit.graphs.push(self.graph());
         exhibit.notes.clone_from(&self.notes);
         exhibit
@@ -33,8 +33,8 @@ impl ResultsTable {
         let point = |(place, row): (usize, &ResultsRow)| ((place + 1) as f64, row.best_cash);
         let axis = |label, scale| GraphAxis { label, scale };
         Graph {
-            title: "Cash of the best runs, by place in the table".to_owned(),
-            summary: format!("{} results, from the most cash to the least.", self.rows.len()),
+            title: "Cash of the best runs, by rank".to_owned(),
+            summary: format!("{} results, highest cash first.", self.rows.len()),
             across: axis("place", AxisScale::Whole),
             up: axis("dollars", AxisScale::Linear),
             series: vec![Series {

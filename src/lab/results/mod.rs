@@ -1,4 +1,4 @@
-//! The results table of the paper for own runs: who went bankrupt how often, the best run, lives, calls a week, beside the
+//! The paper's results table for own runs: bankruptcies, best run, survival, and calls a week, next to the
 //! published rows (docs/laboratory/results-table.md).
 
 mod exhibit;
@@ -22,29 +22,29 @@ use novamind_session::Session;
 #[cfg(feature = "server")]
 pub use tries::{Try, tries_exhibit};
 
-/// A run that is over and has a score.
+/// A finished run with a score.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FinishedRun {
-    /// Its name.
+    /// Name.
     pub run: String,
-    /// Who played, as the experimenter named them.
+    /// Label of the participant, if any.
     pub participant: Option<String>,
-    /// The policy that played it, if one did.
+    /// Name of the policy that played, if any.
     pub policy: Option<String>,
     /// Seed.
     pub seed: u64,
-    /// Cash after the last day, dollars; 0 of a bankrupt company.
+    /// Cash after the last day, dollars; 0 after a bankruptcy.
     pub score: f64,
-    /// Cash fell below zero.
+    /// Whether the run went bankrupt.
     pub is_bankrupt: bool,
-    /// Days that the company lived.
+    /// Survival in days.
     pub survival_days: u32,
-    /// Calls that did something, for each week that ran.
+    /// Accepted state-changing calls per simulated week.
     pub calls_per_week: f64,
 }
 
 impl FinishedRun {
-    /// The result of a run; none while it has no score.
+    /// Returns the result of a run, or `None` if it has no score.
     pub fn of(session: &Session, lines: &[Line]) -> Option<FinishedRun> {
         let manifest = session.manifest();
         Some(FinishedRun {
@@ -60,34 +60,34 @@ impl FinishedRun {
     }
 }
 
-/// What runs are put together by.
+/// Grouping of runs into rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ResultsBy {
-    /// Who played: participants, and policies under their names.
+    /// By player: participants, and policies by name.
     Participant,
-    /// The policy: what people played is left out.
+    /// By policy; runs played by people are excluded.
     Policy,
 }
 
-/// Whose runs a row holds. A participant may have any label: kinds are told apart by more than names.
+/// The player of a row. The kind is part of it, because a participant's label can equal another name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Player {
     /// A participant.
     Participant,
-    /// Somebody who was not named.
+    /// A player without a label.
     Unnamed,
     /// A policy.
     Policy,
-    /// The company that nobody runs, played for the table.
+    /// The idle company, played for the table.
     Idle,
-    /// An agent of the paper, in its words.
+    /// An agent of the paper, by its published name.
     PublishedAgent,
     /// The rule-based company of the paper.
     PublishedBaseline,
 }
 
 impl Player {
-    /// Where the row comes from, in words.
+    /// Returns the source of the row as text.
     pub fn source(self) -> &'static str {
         match self {
             Player::Participant => "own",
@@ -112,55 +112,54 @@ impl ResultsBy {
     }
 }
 
-/// A row: the runs of somebody.
+/// A row of the table: the runs of a player.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResultsRow {
-    /// Whose they are.
+    /// Name of the player.
     pub name: String,
-    /// What they are.
+    /// Kind of player.
     pub player: Player,
-    /// Runs.
+    /// Number of runs.
     pub runs: u32,
-    /// Those that went bankrupt; none where it was not published.
+    /// Number of bankruptcies; `None` if not published.
     pub bankruptcies: Option<u32>,
-    /// Cash at the end of the best run, dollars.
+    /// Final cash of the best run, dollars.
     pub best_cash: f64,
-    /// The best run, of own ones.
+    /// Name of the best run, for own runs.
     pub best_run: Option<String>,
-    /// Longest life, days.
+    /// Longest survival, days.
     pub max_survival_days: Option<f64>,
-    /// Mean life, days.
+    /// Mean survival, days.
     pub mean_survival_days: Option<f64>,
-    /// Standard deviation of the lives, of all runs.
+    /// Standard deviation of survival over all runs.
     pub std_survival_days: Option<f64>,
-    /// Calls a week: own ones that act, published turns of an agent.
+    /// Calls a week: state-changing calls of own runs, published turns of agents.
     pub calls_per_week: Option<f64>,
-    /// Published best runs that ended with less.
+    /// Number of published best runs with less final cash.
     pub beats: usize,
 }
 
-/// The table.
+/// The results table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResultsTable {
-    /// Rows, the best first.
+    /// Rows, best first.
     pub rows: Vec<ResultsRow>,
-    /// What is said under it.
+    /// Notes below the table.
     pub notes: Vec<String>,
 }
 
-/// The policy that does nothing at all.
+/// Policy that makes no calls.
 pub const IDLE_POLICY: &str = "P0";
 
-/// Name of the row of everybody who was not named.
+/// Name of the row of players without a label.
 const UNNAMED: &str = "(no label)";
 
-/// Name of the row of the idle company.
 const IDLE_NAME: &str = "idle company";
 
-/// The company that does nothing, played on the seed of the published runs.
+/// Plays the idle company on the seed of the published runs.
 ///
 /// # Errors
-/// The run cannot begin.
+/// Fails if the run cannot start.
 pub fn idle_company(policy: &Policy, configuration: &Configuration) -> Result<FinishedRun, RunError> {
     let spec = RunSpec { surges: Some(true), ..RunSpec::of_seed(PUBLISHED_SEED) };
     let outcome = play(policy, &spec, configuration, &mut Collector::idle())?;
@@ -177,7 +176,7 @@ pub fn idle_company(policy: &Policy, configuration: &Configuration) -> Result<Fi
 }
 
 impl ResultsTable {
-    /// Own runs and the idle company beside the published rows; of runs that cannot be compared only the reasons are told.
+    /// Returns own runs and the idle company with the published rows. For incomparable runs, notes list the reasons.
     pub fn of(
         runs: &[FinishedRun],
         left_out: &[Vec<Obstacle>],
@@ -199,7 +198,7 @@ impl ResultsTable {
         let again: Vec<&str> =
             groups.iter().filter(|(_, own)| has_one_twice(own)).map(|((_, name), _)| name.as_str()).collect();
         let again = (!again.is_empty()).then(|| {
-            format!("Several runs of one seed: {}. Whoever plays a seed again knows what comes; a policy does the same again.", again.join(", "))
+            format!("Several runs of one seed: {}. A person who repeats a seed knows its future; a policy plays the same again.", again.join(", "))
         });
         let mut rows: Vec<ResultsRow> =
             groups.into_iter().filter_map(|(player, own)| row_of(player, &own)).collect();
@@ -215,15 +214,15 @@ impl ResultsTable {
         let mut notes = notes();
         notes.extend(not_ranked_in_words(left_out));
         if rows.iter().any(|row| row.player == Player::Policy) {
-            notes.push("Policies are told apart by the names in their files alone.".to_owned());
+            notes.push("Policies are distinguished only by the names in their files.".to_owned());
         }
         notes.extend(again);
         if played_by_people > 0 {
-            notes.push(format!("Runs that people played are left out: {played_by_people}."));
+            notes.push(format!("Excluded runs played by people: {played_by_people}."));
         }
         if runs.iter().any(|run| run.seed != PUBLISHED_SEED) {
             notes.push(format!(
-                "Own runs of other seeds than {PUBLISHED_SEED} had other luck than the published ones."
+                "Own runs with seeds other than {PUBLISHED_SEED} had other random draws than published runs."
             ));
         }
         notes.push(format!("Published: {}.", published().source));
@@ -231,10 +230,9 @@ impl ResultsTable {
     }
 }
 
-/// The best of some runs, by the rule of the published table.
 fn best_of<'a>(runs: &[&'a FinishedRun]) -> Option<&'a FinishedRun> {
     let result = |run: &FinishedRun| (run.score, run.survival_days);
-    // Of equal ones the first by name.
+    // Ties: first by name.
     let order = |one: &&FinishedRun, other: &&FinishedRun| {
         by_result(result(one), result(other)).then_with(|| other.run.cmp(&one.run))
     };
@@ -260,7 +258,7 @@ fn row_of((player, name): (Player, String), runs: &[&FinishedRun]) -> Option<Res
     })
 }
 
-/// Standard deviation of a whole population, as the published tables have it; a sample's would be larger.
+/// Returns the population standard deviation, as in the published tables.
 fn spread_of_all(values: &[f64]) -> f64 {
     let count = values.len().max(1) as f64;
     Sample::of(values).std * ((count - 1.0) / count).sqrt()
@@ -301,13 +299,13 @@ fn published_rows() -> Vec<ResultsRow> {
     rows
 }
 
-/// What figures mean.
+/// Returns the notes that define the figures.
 fn notes() -> Vec<String> {
     vec![
-        "The best run has the most cash at the end; where every run is bankrupt, the longest life. The spread of lives is \
+        "The best run has the most final cash; if all runs went bankrupt, the longest life. The spread of lives is \
          that of all runs, not of a sample."
             .to_owned(),
-        "Calls a week: of own runs accepted calls that changed something, the mean over the runs; published are turns of an \
+        "Calls a week: for own runs, accepted calls that changed something, averaged over runs; published figures are turns of an \
          agent, which may hold several calls."
             .to_owned(),
         format!(
@@ -354,7 +352,7 @@ mod tests {
         let first = named(&table, "P01");
         assert_eq!((first.bankruptcies, first.runs, first.best_run.as_deref()), (Some(1), 3, Some("a2")));
         assert_eq!((first.best_cash, first.beats), (3e6, 14));
-        // The lives and the spread that were published of an agent with one bankruptcy in three runs.
+        // Published survival and spread of an agent with one bankruptcy in three runs.
         assert_eq!(first.mean_survival_days.map(|days| (days * 10.0).round() / 10.0), Some(461.7));
         assert_eq!(first.std_survival_days.map(|days| (days * 10.0).round() / 10.0), Some(54.2));
         let second = named(&table, "P02");
@@ -364,7 +362,7 @@ mod tests {
         let policies = ResultsTable::of(&runs, &[], &idle, ResultsBy::Policy);
         assert_eq!(named(&policies, "mine").player, Player::Policy);
         assert!(policies.rows.iter().all(|row| row.name != "P01"));
-        // A label is not believed: it neither joins the runs of a policy nor the published ones.
+        // A participant's label never merges its runs with those of a policy or with published ones.
         let named_so = [run("e1", Some("mine"), 9e6, 500), run("e2", Some("idle company"), 8e6, 500)];
         let runs: Vec<FinishedRun> = runs.into_iter().chain(named_so).collect();
         let table = ResultsTable::of(&runs, &[], &idle, ResultsBy::Participant);
@@ -379,7 +377,7 @@ mod tests {
     #[test]
     fn the_idle_company_is_played_and_beats_thirteen_of_sixteen() {
         let configuration = Configuration::shipped();
-        let policy = Policy::find(IDLE_POLICY, &configuration).expect("a shipped policy");
+        let policy = Policy::find(IDLE_POLICY, &configuration).expect("a bundled policy");
         let idle = idle_company(&policy, &configuration).expect("it plays");
         assert_eq!((idle.survival_days, idle.is_bankrupt, idle.score.round()), (500, false, 957_500.0));
         let table = ResultsTable::of(&[], &[], &idle, ResultsBy::Participant);

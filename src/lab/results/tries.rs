@@ -1,27 +1,27 @@
-//! Several tries of one program beside each other, and the one that counts by the rule of the published table.
+//! Several attempts of one program, and the selected one by the rule of the published table.
 
 use super::{FinishedRun, best_of};
 use crate::exhibit::{Column, Datum, Exhibit, Measure, Tabulation};
 use novamind_base::statistics::Sample;
 
-/// A fresh run that a program was given.
+/// A new run for a program.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Try {
-    /// Its number, from 1.
+    /// Number, from 1.
     pub number: u32,
-    /// The run.
+    /// Name of the run.
     pub run: String,
-    /// How often the program was started.
+    /// Number of starts of the program.
     pub attempts: u32,
-    /// Exit code of the last start; none if a signal ended it.
+    /// Exit code of the last start; `None` if a signal ended it.
     pub exit_code: Option<i32>,
     /// Last simulated day.
     pub day: u32,
-    /// What came of the run; none if it is not over.
+    /// Result of the run; `None` if it is unfinished.
     pub result: Option<FinishedRun>,
 }
 
-/// The tries as an exhibit. The title says whose they are.
+/// Returns a table of the attempts under a title that names the program.
 pub fn tries_exhibit(title: String, tries: &[Try]) -> Exhibit {
     let columns = vec![
         Column::numbers("try", "try", Measure::Count),
@@ -39,18 +39,18 @@ pub fn tries_exhibit(title: String, tries: &[Try]) -> Exhibit {
     let rows = tries.iter().map(|own| cells(own, best.as_deref())).collect();
     let mut exhibit = Exhibit::of(title, Tabulation { rows, ..Tabulation::new("tries", "", columns) });
     exhibit.notes.push(
-        "Selected is the run with the most cash at the end; where every run is bankrupt, the one with the longest life.".to_owned(),
+        "Selected: the run with the most final cash; if all runs went bankrupt, the one with the longest life.".to_owned(),
     );
     let unfinished = tries.len() - finished.len();
     if unfinished > 0 {
-        exhibit.notes.push(format!("Not over, and left out of the selection: {unfinished}."));
+        exhibit.notes.push(format!("Unfinished runs, not selected: {unfinished}."));
     }
     if !finished.is_empty() {
         let bankrupt = finished.iter().filter(|run| run.is_bankrupt).count();
         let lives: Vec<f64> = finished.iter().map(|run| f64::from(run.survival_days)).collect();
         exhibit.notes.push(format!(
-            "Bankrupt: {bankrupt} of {}; mean life {:.1} days. `novamind lab table` sets runs of the published length and start \
-             beside the published results.",
+            "Bankrupt: {bankrupt} of {}; mean life {:.1} days. `novamind lab table` compares runs that have the published length and starting \
+             cash with published ones.",
             finished.len(),
             Sample::of(&lives).mean
         ));
@@ -60,7 +60,7 @@ pub fn tries_exhibit(title: String, tries: &[Try]) -> Exhibit {
 
 fn cells(own: &Try, best: Option<&str>) -> Vec<Datum> {
     let end = match &own.result {
-        None => "not over",
+        None => "unfinished",
         Some(run) if run.is_bankrupt => "bankrupt",
         Some(_) => "last day",
     };

@@ -1,4 +1,4 @@
-//! Study files: read, checked, and spread out into arms.
+//! Parses and checks study files and expands them into arms.
 
 use std::path::Path;
 
@@ -14,19 +14,18 @@ use novamind_record::error::RunError;
 use novamind_record::folder::configuration::{Configuration, DEFAULT_SCENARIO, check_cash, check_days};
 use novamind_world::params::{ParameterError, Params, Replayed, line_of_key};
 
-/// Most runs of a study.
 const MOST_RUNS: u64 = 1_000_000;
 
-/// A study that was read: what is played, in the order of its rows.
+/// A parsed study, in the order of its rows.
 #[derive(Debug, Clone)]
 pub struct StudyPlan {
     /// Name: letters, digits, hyphens and underscores.
     pub name: String,
-    /// Names of the columns that say what a run is: policy, scenario, and what is varied.
+    /// Names of the columns that identify a run: policy, scenario, and varied settings.
     pub factors: Vec<String>,
-    /// The values of the factors, by arm.
+    /// Values of the factors by arm.
     pub levels: Vec<Vec<String>>,
-    /// A scenario replays recorded luck.
+    /// Whether a scenario replays recorded draws.
     pub replays_a_record: bool,
     /// Arms and seeds.
     pub experiment: Experiment,
@@ -55,7 +54,7 @@ struct StudyText {
 }
 
 #[derive(Deserialize)]
-#[serde(untagged, expecting = "seeds are a number, a range like \"1..24\", or a list of numbers")]
+#[serde(untagged, expecting = "seeds must be a number, a range like \"1..24\", or a list of numbers")]
 enum SeedsGiven {
     One(u64),
     Range(String),
@@ -70,7 +69,7 @@ struct OverrideSet {
     set: Table,
 }
 
-/// A study file with its text, to name the lines of what is wrong.
+/// A study file with its text, to locate problems.
 struct StudySource<'a> {
     name: String,
     text: &'a str,
@@ -81,7 +80,7 @@ impl StudySource<'_> {
         ParameterError::of_key(&self.name, self.text, key, problem)
     }
 
-    /// What is wrong with an override: at the first line that names it from its table on.
+    /// Returns an error at the first line of the table that names an override.
     fn wrong_override(&self, within: &str, key: &str, problem: impl Into<String>) -> ParameterError {
         let from = line_of_key(self.text, within).unwrap_or(1);
         let names = |line: &&str| line.contains(key) || line.contains(key.rsplit('.').next().unwrap_or(key));
@@ -116,10 +115,10 @@ impl StudySource<'_> {
 }
 
 impl StudyPlan {
-    /// Reads a study file; policies that are files lie beside it.
+    /// Reads a study file. Paths of policy files are relative to it.
     ///
     /// # Errors
-    /// The first thing that is wrong, with its line and its key.
+    /// Returns the first problem with its line and key.
     pub fn read(
         path: &Path,
         daily: bool,
@@ -145,7 +144,7 @@ impl StudyPlan {
         let own = source.read()?;
         let fits = |letter: char| letter.is_ascii_alphanumeric() || "-_".contains(letter);
         if own.name.is_empty() || own.name.len() > 60 || !own.name.chars().all(fits) {
-            let problem = "a study is named with up to 60 letters, digits, hyphens and underscores";
+            let problem = "use up to 60 letters, digits, hyphens and underscores";
             return Err(source.wrong("name", problem));
         }
         let policies = policies(source, &own, folder, configuration)?;
@@ -178,7 +177,7 @@ impl StudyPlan {
         })
     }
 
-    /// The arm and the seed of a run, counted from 0.
+    /// Returns the indices of the arm and the seed of a run.
     pub(super) fn run(&self, number: usize) -> (&[String], u64) {
         let seeds = &self.experiment.seeds;
         (&self.levels[number / seeds.len()], seeds[number % seeds.len()])
@@ -204,7 +203,7 @@ impl StudyText {
     }
 }
 
-/// The scenarios of a policy: those of the study, else its own.
+/// Returns the scenarios of a policy: those of the study, otherwise its own.
 fn scenarios(own: &StudyText, policy: &Policy) -> Vec<String> {
     match own.scenarios.is_empty() {
         true => vec![policy.start.scenario.clone().unwrap_or(DEFAULT_SCENARIO.to_owned())],
@@ -219,7 +218,7 @@ fn policies(
     configuration: &Configuration,
 ) -> Result<Vec<Policy>, ParameterError> {
     if own.policies.is_empty() {
-        return Err(source.wrong("policies", "a study plays at least one policy"));
+        return Err(source.wrong("policies", "a study needs at least one policy"));
     }
     let mut found: Vec<Policy> = Vec::new();
     for (at, name) in own.policies.iter().enumerate() {
@@ -229,18 +228,17 @@ fn policies(
         let policy =
             Policy::find(&place, configuration).map_err(|error| source.wrong(&key, error.to_string()))?;
         if found.iter().any(|other| other.name == policy.name) {
-            return Err(source.wrong(&key, format!("two policies are called {}", policy.name)));
+            return Err(source.wrong(&key, format!("two policies are named {}", policy.name)));
         }
         found.push(policy);
     }
     Ok(found)
 }
 
-/// Each scenario once: its runs would be the same. A list of none says nothing.
+/// Checks that scenarios are unique and that the list is not empty.
 fn check_scenarios(source: &StudySource<'_>, own: &StudyText) -> Result<(), ParameterError> {
     if own.scenarios.is_empty() && line_of_key(source.text, "scenarios").is_some() {
-        let problem =
-            "an empty list plays nothing; leave the key out, and each policy plays its own scenario";
+        let problem = "the list is empty; leave the key out to play each policy's own scenario";
         return Err(source.wrong("scenarios", problem));
     }
     let twice = |at: &usize| own.scenarios[..*at].contains(&own.scenarios[*at]);
@@ -253,7 +251,7 @@ fn check_scenarios(source: &StudySource<'_>, own: &StudyText) -> Result<(), Para
     }
 }
 
-/// Parameters that a study, or the policy, says by keys of their own: what they were set to here would not act.
+/// Parameters that a study or policy sets by separate keys. Values in a grid or in overrides would have no effect.
 const SAID_ELSEWHERE: [&str; 3] = ["run.seed", "run.total_days", "initial.initial_cash"];
 
 fn refuse_said_elsewhere<'a>(
@@ -264,14 +262,14 @@ fn refuse_said_elsewhere<'a>(
     match keys.find(|key| SAID_ELSEWHERE.contains(&key.as_str())) {
         Some(key) => {
             let problem =
-                "seeds, days and cash are keys of the study: vary them there, or in several studies";
+                "seeds, days and cash are keys of the study: set them there, or use several studies";
             Err(source.wrong_override(within, key, problem))
         }
         None => Ok(()),
     }
 }
 
-/// Whether two values say the same: 0 and 0.0 do.
+/// Returns whether two values are equal; 0 equals 0.0.
 fn is_same(one: &Value, other: &Value) -> bool {
     let number = |value: &Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
     match (number(one), number(other)) {
@@ -280,7 +278,7 @@ fn is_same(one: &Value, other: &Value) -> bool {
     }
 }
 
-/// What is varied beside policies, scenarios and seeds.
+/// The varied parameters and their combinations.
 struct Varied {
     names: Vec<String>,
     all: Vec<Level>,
@@ -294,15 +292,17 @@ fn varied(source: &StudySource<'_>, own: &StudyText) -> Result<Varied, Parameter
         for (at, set) in own.overrides.iter().enumerate() {
             let is_taken = sets.iter().any(|other| other.labels[0] == set.name);
             if set.name.is_empty() || is_taken || set.name.chars().any(char::is_control) {
-                let problem = "sets of overrides have names, each another one";
+                let problem = "every set of overrides needs a unique name";
                 return Err(source.wrong(&format!("overrides.{at}"), problem));
             }
             let given = flat(&set.set);
             refuse_said_elsewhere(source, "overrides", given.iter().map(|(key, _)| key))?;
             let overrides: Vec<_> = given.into_iter().map(|(key, value)| (key, value_text(value))).collect();
             if let Some(twin) = sets.iter().find(|other| other.overrides == overrides) {
-                let problem =
-                    format!("{} sets what {} sets: their runs would be the same", set.name, twin.labels[0]);
+                let problem = format!(
+                    "{} sets the same parameters as {}: their runs would be identical",
+                    set.name, twin.labels[0]
+                );
                 return Err(source.wrong(&format!("overrides.{at}"), problem));
             }
             sets.push(Level { labels: vec![set.name.clone()], overrides });
@@ -313,15 +313,19 @@ fn varied(source: &StudySource<'_>, own: &StudyText) -> Result<Varied, Parameter
     refuse_said_elsewhere(source, "grid", grid.iter().map(|(key, _)| key))?;
     let is_set = |key: &String| all.iter().any(|level| level.overrides.iter().any(|(own, _)| own == key));
     if let Some((key, _)) = grid.iter().find(|(key, _)| is_set(key)) {
-        let problem = "a set of overrides sets it too, which the grid would replace: vary it in one of them";
+        let problem = "a set of overrides sets it too: vary it either there or in the grid";
         return Err(source.wrong_override("grid", key, problem));
     }
     for (key, values) in grid {
         let Value::Array(values) = values else {
-            return Err(source.wrong_override("grid", &key, "a list of values is varied"));
+            return Err(source.wrong_override("grid", &key, "a grid parameter needs a list of values"));
         };
         if values.is_empty() {
-            return Err(source.wrong_override("grid", &key, "a list without values leaves nothing to play"));
+            return Err(source.wrong_override(
+                "grid",
+                &key,
+                "the list is empty; add a value or remove the key",
+            ));
         }
         if let Some(at) =
             (0..values.len()).find(|at| values[..*at].iter().any(|own| is_same(own, &values[*at])))
@@ -351,7 +355,7 @@ fn seeds(
     let most = MOST_RUNS / arms.max(1);
     let too_many = |count: u64| {
         let problem = format!(
-            "{count} seeds for each of {arms} arms are more than the {MOST_RUNS} runs a study may have: make several of it"
+            "{count} seeds for each of {arms} arms exceed the maximum of {MOST_RUNS} runs: split the study"
         );
         source.wrong("seeds", problem)
     };
@@ -373,23 +377,22 @@ fn seeds(
         return Err(source.wrong("seeds", format!("seed {} appears twice", pair[0])));
     }
     match seeds.len() as u64 {
-        0 => Err(source.wrong("seeds", "a study has at least one seed")),
+        0 => Err(source.wrong("seeds", "a study needs at least one seed")),
         count if count > most => Err(too_many(count)),
         _ => Ok(seeds),
     }
 }
 
-/// Days and cash that a run can have.
 fn check_terms(source: &StudySource<'_>, own: &StudyText) -> Result<(), ParameterError> {
     own.days.map_or(Ok(()), check_days).map_err(|problem| source.wrong("days", problem))?;
     own.cash.map_or(Ok(()), check_cash).map_err(|problem| source.wrong("cash", problem))?;
     match own.until {
-        Some(0) => Err(source.wrong("until", "a run goes on for a day at least")),
+        Some(0) => Err(source.wrong("until", "until must be at least 1")),
         _ => Ok(()),
     }
 }
 
-/// The parameters of an arm that can begin.
+/// Checks that the runs of an arm can start.
 fn checked(
     source: &StudySource<'_>,
     own: &StudyText,

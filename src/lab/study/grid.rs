@@ -1,8 +1,8 @@
-//! Combinations of what a study varies.
+//! Combinations of a study's varied settings.
 
 use toml::{Table, Value};
 
-/// A combination: what its columns say, and the parameters it sets.
+/// A combination of settings.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Level {
     /// One text for each column.
@@ -11,7 +11,7 @@ pub(super) struct Level {
     pub overrides: Vec<(String, String)>,
 }
 
-/// Each of some combinations with each of others; the later ones vary fastest.
+/// Returns the product of two lists of combinations; the second varies fastest.
 pub(super) fn crossed(slow: &[Level], fast: &[Level]) -> Vec<Level> {
     let both = |slow: &Level, fast: &Level| Level {
         labels: slow.labels.iter().chain(&fast.labels).cloned().collect(),
@@ -20,7 +20,7 @@ pub(super) fn crossed(slow: &[Level], fast: &[Level]) -> Vec<Level> {
     slow.iter().flat_map(|one| fast.iter().map(move |other| both(one, other))).collect()
 }
 
-/// The entries of a table by `table.key`, written as one quoted key or as a key of a table.
+/// Returns the entries of a table by `table.key`, from quoted keys and from nested tables.
 pub(super) fn flat(table: &Table) -> Vec<(String, &Value)> {
     let mut all = Vec::new();
     for (key, value) in table {
@@ -34,7 +34,7 @@ pub(super) fn flat(table: &Table) -> Vec<(String, &Value)> {
     all
 }
 
-/// A value as an override takes it.
+/// Returns the text of a value for an override.
 pub(super) fn value_text(value: &Value) -> String {
     value.to_string()
 }

@@ -1,4 +1,4 @@
-//! Shards put together again: all of one study, each once, none damaged, their rows in the order of the runs.
+//! Merges the shards of a study: checks that all are present once and undamaged, and writes their rows in the order of the runs.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use super::shard::{Shard, ShardHead};
 
-/// Why shards cannot be put together: everything that is wrong, with the names of the files.
+/// All problems that prevent a merge, with file names.
 #[derive(Debug)]
 pub struct MergeError(Vec<String>);
 
@@ -26,17 +26,17 @@ impl MergeError {
     }
 }
 
-/// The shards of a study, in their order: all of them, each whole.
+/// A complete set of undamaged shards, in order.
 #[derive(Debug)]
 pub struct Shards {
     files: Vec<PathBuf>,
 }
 
 impl Shards {
-    /// Finds the shards among files and in folders, and checks that they belong together.
+    /// Finds the shards in files and folders and checks that they belong together.
     ///
     /// # Errors
-    /// A file is no shard, is damaged, or of another study; a shard is there twice or is missing.
+    /// Fails if a file is not a shard, is damaged or belongs to another study, or if a shard is missing or present twice.
     pub fn of(places: &[PathBuf]) -> Result<Shards, MergeError> {
         let mut problems = Vec::new();
         let (mut found, mut damaged): (Vec<(PathBuf, ShardHead)>, Vec<ShardHead>) = Default::default();
@@ -44,14 +44,15 @@ impl Shards {
             match read(&file) {
                 Ok(ReadShard::Whole(head)) => found.push((file, head)),
                 Ok(ReadShard::Damaged(head)) => {
-                    problems.push(format!("{} is damaged: play shard {} again", file.display(), head.part));
+                    problems.push(format!("{} is damaged: rerun shard {}", file.display(), head.part));
                     damaged.push(head);
                 }
                 Err(problem) => problems.push(format!("{}: {problem}", file.display())),
             }
         }
         let Some((first, study)) = found.first().cloned() else {
-            let nothing = "there is no shard: `lab study FILE --shard 1/N --out DIR` writes one".to_owned();
+            let nothing =
+                "no shards found: write them with `lab study FILE --shard 1/N --out DIR`".to_owned();
             return Err(MergeError(if problems.is_empty() { vec![nothing] } else { problems }));
         };
         let mut by_number: BTreeMap<usize, PathBuf> = BTreeMap::new();
@@ -61,7 +62,7 @@ impl Shards {
                 problems.push(format!("{place} belongs to the study {}, not to {}", head.study, study.study));
             } else if head.digest != study.digest {
                 problems.push(format!(
-                    "{place} is another {} than {}: its policies, parameters, seeds or program differ",
+                    "{place} belongs to another version of {} than {}: policies, parameters, seeds or program differ",
                     study.study,
                     first.display()
                 ));
@@ -89,15 +90,15 @@ impl Shards {
         }
     }
 
-    /// The files, in the order of their shards.
+    /// Returns the files in the order of their shards.
     pub fn files(&self) -> &[PathBuf] {
         &self.files
     }
 
-    /// Writes the rows of all shards under the names of their columns, run by run.
+    /// Writes a header and the rows of all shards, ordered by run.
     ///
     /// # Errors
-    /// A file can no longer be read, or what is written to fails.
+    /// Fails if a file cannot be read or the output cannot be written.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
         let mut readers = Vec::new();
         for (at, file) in self.files.iter().enumerate() {
@@ -125,13 +126,13 @@ impl Shards {
         }
         let is_left = readers.iter().position(|own| !own.line.is_empty());
         is_left.map_or(Ok(()), |at| {
-            let problem = format!("{}: its runs are not in their order", self.files[at].display());
+            let problem = format!("{}: its runs are out of order", self.files[at].display());
             Err(io::Error::other(problem))
         })
     }
 }
 
-/// The first of many names.
+/// Lists the first names and the number of others.
 fn in_short(names: &[String]) -> String {
     const SHOWN: usize = 10;
     match names.len() {
@@ -140,10 +141,10 @@ fn in_short(names: &[String]) -> String {
     }
 }
 
-/// Rows of a shard, one after the other.
+/// A reader of a shard's rows.
 struct RowReader {
     lines: BufReader<File>,
-    /// The row, with its end; empty behind the last one.
+    /// Current row with its line end; empty at the end.
     line: Vec<u8>,
 }
 
@@ -153,14 +154,13 @@ impl RowReader {
         self.lines.read_until(b'\n', &mut self.line).map(drop)
     }
 
-    /// The number of the row's run.
     fn run(&self) -> Option<usize> {
         let cell = self.line.split(|byte| *byte == b',').next()?;
         std::str::from_utf8(cell).ok()?.parse().ok()
     }
 }
 
-/// Files as they are named, and those in folders that are named as shards are.
+/// Returns the given files, and the files in given folders whose names are shard names.
 fn files(places: &[PathBuf]) -> Result<Vec<PathBuf>, MergeError> {
     let mut all = Vec::new();
     for place in places {
@@ -175,7 +175,7 @@ fn files(places: &[PathBuf]) -> Result<Vec<PathBuf>, MergeError> {
         own.sort_unstable();
         all.extend(own);
     }
-    // The same file under two of the given names is one file.
+    // A file that is given twice counts once.
     let mut seen = std::collections::BTreeSet::new();
     all.retain(|path| seen.insert(path.canonicalize().unwrap_or_else(|_| path.clone())));
     Ok(all)
@@ -190,25 +190,25 @@ fn is_named_as_shard(path: &Path) -> bool {
         .is_some_and(|(shard, of)| is_number(shard) && is_number(of))
 }
 
-/// A shard whose first line was read.
+/// A shard with a valid first line.
 enum ReadShard {
-    /// Its rows are what the line says.
+    /// The rows match the checksum.
     Whole(ShardHead),
-    /// They are not.
+    /// The rows do not match.
     Damaged(ShardHead),
 }
 
-/// The head of a shard, and whether the rest is what it says.
+/// Returns the head of a shard and whether its rows match.
 fn read(file: &Path) -> Result<ReadShard, String> {
     if std::fs::metadata(file).is_ok_and(|found| !found.is_file()) {
-        return Err("it is no file".to_owned());
+        return Err("it is not a file".to_owned());
     }
     let mut reader = BufReader::new(File::open(file).map_err(|error| error.to_string())?);
-    // A first line is short: a file without line ends is no shard.
+    // First lines are short, so a file without line ends is not a shard.
     let mut line = Vec::new();
     reader.by_ref().take(4096).read_until(b'\n', &mut line).map_err(|error| error.to_string())?;
     let head = std::str::from_utf8(&line).ok().and_then(|line| ShardHead::of_line(line.trim_end()));
-    let head = head.ok_or("it is no shard of a study")?;
+    let head = head.ok_or("it is not a shard of a study")?;
     let mut hasher = blake3::Hasher::new();
     io::copy(&mut reader, &mut hasher).map_err(|error| error.to_string())?;
     let is_whole = hasher.finalize().to_hex()[..32] == *head.checksum;

@@ -1,7 +1,7 @@
-//! Large studies: policies by scenarios by parameters by seeds, in shards if they are to be split (docs/laboratory/study.md).
+//! Studies of policies by scenarios, parameters and seeds, optionally split into shards (docs/laboratory/study.md).
 //!
-//! A study file names what is played; every run has a number. Shard i of n plays the runs i, i + n, i + 2n, …, and
-//! `lab merge` puts the rows of all shards into the order of their runs: the bytes of the study that was not split.
+//! A study file defines numbered runs. Shard i of n plays the runs i, i + n, i + 2n, …, and
+//! `lab merge` writes the rows of all shards in the order of their runs. The result equals that of the unsplit study.
 
 mod definition;
 mod grid;

@@ -1,4 +1,4 @@
-//! Shards: which runs are played where, and the first line of a file of rows, which says what the rest is.
+//! Shards: the assignment of runs, and the first line of a shard file, which describes its rows.
 
 use std::fmt;
 
@@ -9,15 +9,15 @@ use crate::experiment::ExperimentError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_world::MECHANICS;
 
-/// What the first line of a shard begins with.
+/// Prefix of a shard's first line.
 const MARK: &str = "# novamind study shard ";
 
 /// One of several parts of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
-    /// Which, from 1.
+    /// Number, from 1.
     pub shard: usize,
-    /// Of how many.
+    /// Total number of shards.
     pub of: usize,
 }
 
@@ -27,15 +27,14 @@ impl fmt::Display for Shard {
     }
 }
 
-/// Most shards of a study.
 const MOST_SHARDS: usize = 100_000;
 
-/// Reads `2/4`.
+/// Parses `2/4`.
 ///
 /// # Errors
-/// It is no shard.
+/// Fails if the text is not a valid shard.
 pub fn parse_shard(text: &str) -> Result<Shard, String> {
-    let wrong = || format!("{text} is no shard: the second of four is 2/4, from 1/N to N/N");
+    let wrong = || format!("{text} is not a shard: write the second of four as 2/4");
     let (shard, of) = text.split_once('/').ok_or_else(wrong)?;
     let number = |text: &str| text.trim().parse::<usize>().map_err(|_| wrong());
     let own = Shard { shard: number(shard)?, of: number(of)? };
@@ -43,28 +42,28 @@ pub fn parse_shard(text: &str) -> Result<Shard, String> {
 }
 
 impl Shard {
-    /// Its runs among so many, by their numbers from 0.
+    /// Returns the indices of its runs.
     pub fn numbers(self, runs: usize) -> Vec<usize> {
         (self.shard - 1..runs).step_by(self.of).collect()
     }
 }
 
-/// What a shard says of itself in its first line.
+/// The description of a shard in its first line.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ShardHead {
     /// Name of the study.
     pub study: String,
-    /// Names everything its rows depend on: program, mechanics, parameters, policies, seeds, columns.
+    /// Digest of everything its rows depend on: program, mechanics, parameters, policies, seeds, columns.
     pub digest: String,
-    /// Which part of it.
+    /// Part of the study.
     #[serde(flatten)]
     pub part: Shard,
-    /// blake3 of the lines that follow.
+    /// BLAKE3 hash of the following lines.
     pub checksum: String,
 }
 
 impl ShardHead {
-    /// The file of a shard: its first line, then its rows under the names of their columns.
+    /// Returns the content of a shard file: first line, header, rows.
     pub fn sealed(study: &str, digest: &str, part: Shard, rows: &str) -> String {
         let head = ShardHead {
             study: study.to_owned(),
@@ -75,24 +74,24 @@ impl ShardHead {
         format!("{MARK}{}\n{rows}", serde_json::to_string(&head).expect("plain values"))
     }
 
-    /// Of the first line of a file; none if it is no shard.
+    /// Parses the first line of a file; returns `None` if it is not a shard.
     pub(super) fn of_line(line: &str) -> Option<ShardHead> {
         let head: ShardHead = serde_json::from_str(line.strip_prefix(MARK)?).ok()?;
         (head.part.shard >= 1 && head.part.shard <= head.part.of && head.part.of <= MOST_SHARDS)
             .then_some(head)
     }
 
-    /// The name under which a shard is written.
+    /// Returns the file name of a shard.
     pub fn file_name(study: &str, part: Shard) -> String {
         format!("{study}.{}-of-{}.csv", part.shard, part.of)
     }
 }
 
 impl StudyPlan {
-    /// Names everything that the rows of the study depend on.
+    /// Returns the digest of everything that the rows of the study depend on.
     ///
     /// # Errors
-    /// An arm could not begin.
+    /// Fails if an arm cannot start.
     pub fn digest(&self, configuration: &Configuration) -> Result<String, ExperimentError> {
         let mut hasher = blake3::Hasher::new();
         let labels = serde_json::json!([env!("CARGO_PKG_VERSION"), MECHANICS, self.factors, self.levels]);

@@ -1,4 +1,4 @@
-//! What a study found, arm by arm: what a paper would print of it. The rows hold the rest.
+//! Summary of a study by arm.
 
 use super::StudyPlan;
 use crate::exhibit::{
@@ -10,12 +10,11 @@ use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_report::count;
 
-/// Most arms whose curves can be told apart.
+/// Maximum number of arms in the graph.
 const MOST_CURVES: usize = 8;
-/// Most arms that are named in a warning.
 const MAX_NAMES: usize = 6;
 
-/// Ends of the runs of each arm; the results are those of all runs, in their order.
+/// Returns the final figures of each arm. `results` has all runs in order.
 pub fn summary(plan: &StudyPlan, results: &[RunResult]) -> Exhibit {
     let seeds = plan.experiment.seeds.len();
     let by_arm: Vec<&[RunResult]> = results.chunks(seeds).collect();
@@ -52,21 +51,20 @@ pub fn summary(plan: &StudyPlan, results: &[RunResult]) -> Exhibit {
     let mut exhibit = Exhibit::of(format!("{}: {}", plan.name, size(plan)), table);
     exhibit.graphs.push(curves(plan, &by_arm));
     let luck = match plan.replays_a_record {
-        false => "Seeds are in common: the runs of one seed have the same luck in every arm.",
+        false => "Common seeds: runs with the same seed have the same random draws in every arm.",
         true => {
-            "Seeds are in common, but a scenario that replays recorded luck does not share it with the others, and its seeds differ \
+            "Common seeds, but a scenario that replays recorded draws does not share them with the others, and its seeds differ \
              only in what is not recorded."
         }
     };
     let interval = format!(
-        "Intervals: percentile bootstrap over {LEAST} seeds or more, {RESAMPLES} resamples, {:.0} %. Final cash is what a run ends with, on its \
+        "Intervals: percentile bootstrap over {LEAST} seeds or more, {RESAMPLES} resamples, {:.0} %. Final cash is the cash of a run on its \
          last day or in bankruptcy.",
         LEVEL * 100.0
     );
     if differs {
         exhibit.notes.push(
-            "The arms begin with different cash; final cash does not tell them apart by what they earned."
-                .to_owned(),
+            "The arms start with different cash, so final cash does not compare their earnings.".to_owned(),
         );
     }
     exhibit.notes.extend(played_alike(plan, results));
@@ -76,27 +74,27 @@ pub fn summary(plan: &StudyPlan, results: &[RunResult]) -> Exhibit {
 /// Returns a warning for each group of arms that have the same policy, parameters, days and cash.
 ///
 /// # Errors
-/// There is no such scenario, or a parameter is wrong.
+/// Fails if a scenario is unknown or a parameter is invalid.
 pub fn equal_arms(plan: &StudyPlan, configuration: &Configuration) -> Result<Vec<String>, RunError> {
     let warning = |arms: &Vec<usize>| format!("these arms are identical: {}", names(plan, arms));
     Ok(plan.experiment.equal_arms(configuration)?.iter().map(warning).collect())
 }
 
-/// Returns a warning for each group of arms whose runs ended in the same state with every seed. The results are those of all
-/// runs, in their order.
+/// Returns a warning for each group of arms whose runs ended in the same state with every seed. `results` has all
+/// runs in order.
 pub fn played_alike(plan: &StudyPlan, results: &[RunResult]) -> Vec<String> {
     let states = |runs: &[RunResult]| runs.iter().map(|run| run.state_hash.clone()).collect::<Vec<_>>();
     let by_arm = results.chunks(plan.experiment.seeds.len().max(1)).map(states).collect();
     let warning = |arms: &Vec<usize>| {
         format!(
-            "These arms ended in the same state with every seed, so what tells them apart had no effect: {}.",
+            "These arms ended in the same state with every seed, so their differences had no effect: {}.",
             names(plan, arms)
         )
     };
     groups(by_arm).iter().map(warning).collect()
 }
 
-/// Names of arms: the first few, and how many more.
+/// Lists the first arms and the number of others.
 fn names(plan: &StudyPlan, arms: &[usize]) -> String {
     let names: Vec<String> = arms.iter().take(MAX_NAMES).map(|arm| plan.levels[*arm].join(" / ")).collect();
     let more = arms.len() - names.len();
@@ -104,13 +102,13 @@ fn names(plan: &StudyPlan, arms: &[usize]) -> String {
     format!("{}{more}", names.join("; "))
 }
 
-/// How large a study is: `2 arms by 24 seeds`.
+/// Describes the size of a study: `2 arms by 24 seeds`.
 pub fn size(plan: &StudyPlan) -> String {
     let Experiment { arms, seeds, .. } = &plan.experiment;
     format!("{} by {}", count(arms.len() as u32, "arm"), count(seeds.len() as u32, "seed"))
 }
 
-/// The arms that are drawn: those with the most cash at the end, in the order of the study.
+/// Returns the arms in the graph: those with the highest final cash, in the order of the study.
 fn drawn(by_arm: &[&[RunResult]]) -> Vec<usize> {
     let middle = |arm: &usize| {
         let cash: Vec<f64> = by_arm[*arm].iter().map(|run| run.cash).collect();
@@ -130,7 +128,7 @@ fn curves(plan: &StudyPlan, by_arm: &[&[RunResult]]) -> Graph {
         days.sort_unstable();
         days.dedup();
         let cash = |day: u32| -> Vec<f64> {
-            // A run that has ended keeps what it ended with.
+            // An ended run keeps its final cash.
             let at = |run: &RunResult| run.weeks.iter().rfind(|week| week.day <= day).map(|week| week.cash);
             runs.iter().filter_map(at).collect()
         };
@@ -140,9 +138,9 @@ fn curves(plan: &StudyPlan, by_arm: &[&[RunResult]]) -> Graph {
     Graph {
         title: match by_arm.len() <= MOST_CURVES {
             true => "Median cash by week".to_owned(),
-            false => format!("Median cash by week, the {MOST_CURVES} arms with the most at the end"),
+            false => format!("Median cash by week, the {MOST_CURVES} arms with the most final cash"),
         },
-        summary: "The median over seeds of the cash at the end of each week, by arm.".to_owned(),
+        summary: "Median over seeds of the cash at the end of each week, by arm.".to_owned(),
         across: GraphAxis { label: "day", scale: AxisScale::Whole },
         up: GraphAxis { label: "dollars", scale: AxisScale::Linear },
         series: series.collect(),

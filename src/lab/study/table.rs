@@ -1,4 +1,4 @@
-//! The rows of a study: one for each run, or one for each run and day.
+//! The rows of a study: one per run, or one per run and day.
 
 use super::StudyPlan;
 use crate::experiment::{DayPoint, RunResult};
@@ -34,14 +34,14 @@ const OF_DAY: [&str; 13] = [
     "usage",
 ];
 
-/// The names of the columns.
+/// Returns the names of the columns.
 pub fn head(plan: &StudyPlan) -> Vec<String> {
     let own: &[&str] = if plan.experiment.wanted.daily { &OF_DAY } else { &OF_RUN };
     let before = std::iter::once("run".to_owned()).chain(plan.factors.iter().cloned());
     before.chain(["seed".to_owned()]).chain(own.iter().map(|name| (*name).to_owned())).collect()
 }
 
-/// The rows of a run, by its number from 0. Numbers are in the shortest form that reads back to the same value.
+/// Returns the rows of a run, given its index. Numbers have the shortest form that parses to the same value.
 pub fn rows(plan: &StudyPlan, number: usize, result: &RunResult) -> Vec<Vec<String>> {
     let (levels, seed) = plan.run(number);
     let mut before = vec![(number + 1).to_string()];

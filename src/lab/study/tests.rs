@@ -13,7 +13,7 @@ fn write(folder: &Path, text: &str) -> PathBuf {
 
 const GOOD: &str = r#"
 name = "copying"
-description = "how much rivals copy"
+description = "effect of copying"
 policies = ["P0", "mine.toml"]
 scenarios = ["default", "competitor-hard"]
 seeds = "1..3"
@@ -80,17 +80,17 @@ fn wrong_studies_name_line_and_key() {
         (
             "name = \"x\"\npolicies = [\"P0\"]\nseeds = \"0..1000000\"\n".to_owned(),
             Some(3),
-            ["seeds", "1,000,000 are played"],
+            ["seeds", "the maximum is 1,000,000"],
         ),
         (
             "name = \"x\"\npolicies = [\"P0\"]\nseeds = \"0..18446744073709551615\"\n".to_owned(),
             Some(3),
-            ["seeds", "a seed is at most"],
+            ["seeds", "a seed must be at most"],
         ),
         (format!("{begin}days = 3\n"), Some(4), ["days", "between 7"]),
         (format!("{begin}days = \"long\"\n"), Some(4), ["days", "long"]),
         (format!("{begin}cash = -1.0\n"), Some(4), ["cash", "above 0"]),
-        (format!("{begin}until = 0\n"), Some(4), ["until", "a day at least"]),
+        (format!("{begin}until = 0\n"), Some(4), ["until", "at least 1"]),
         (format!("{begin}days = 28\nuntil = 29\n"), Some(5), ["until", "end on day 28"]),
         (format!("{begin}until = 501\n"), Some(4), ["until", "end on day 500"]),
         (format!("{begin}scenarios = []\n"), Some(4), ["scenarios", "leave the key out"]),
@@ -99,18 +99,18 @@ fn wrong_studies_name_line_and_key() {
                 "{begin}\n[[overrides]]\nname = \"a\"\nset = {{ \"leads.saturation_base\" = 12 }}\n[grid]\nleads.saturation_base = [1, 2]\n"
             ),
             Some(9),
-            ["leads.saturation_base", "vary it in one"],
+            ["leads.saturation_base", "vary it either there"],
         ),
         (
             format!("{begin}\n[[overrides]]\nname = \"a\"\n[[overrides]]\nname = \"b\"\n"),
             Some(7),
-            ["overrides.1", "b sets what a sets"],
+            ["overrides.1", "b sets the same parameters as a"],
         ),
         (format!("{begin}scenarios = [\"default\", \"nowhere\"]\n"), Some(4), ["scenarios.1", "nowhere"]),
         (
             format!("{begin}\n[[overrides]]\nname = \"a\"\n[[overrides]]\nname = \"a\"\n"),
             Some(7),
-            ["overrides.1", "another one"],
+            ["overrides.1", "unique name"],
         ),
         (
             format!("{begin}\n[[overrides]]\nname = \"a\"\nset = {{ \"leads.nothing\" = 1 }}\n"),
@@ -127,7 +127,11 @@ fn wrong_studies_name_line_and_key() {
             Some(6),
             ["demand_surge.probability", "a list"],
         ),
-        (format!("{begin}\n[grid]\n\"leads.saturation_base\" = []\n"), Some(6), ["leads", "nothing to play"]),
+        (
+            format!("{begin}\n[grid]\n\"leads.saturation_base\" = []\n"),
+            Some(6),
+            ["leads", "the list is empty"],
+        ),
         (
             format!("{begin}\n[grid]\n\"leads.saturation_base\" = [1, 1.0]\n"),
             Some(6),
@@ -171,7 +175,7 @@ fn shards_are_read_and_share_all_runs_out() {
     }
 }
 
-/// Shards of a study of so many runs; each run has one row, or as many as its number.
+/// Writes the shards of a study; each run has one row, or as many as its number.
 fn shards(folder: &Path, runs: usize, of: usize, has_many: bool) -> (String, Vec<PathBuf>) {
     let rows = |run: usize| -> String {
         let count = if has_many { run % 3 + 1 } else { 1 };
@@ -204,7 +208,7 @@ fn merged_shards_are_the_study_that_was_not_split() {
         files.reverse();
         assert_eq!(merged(&files), Ok(whole.clone()), "any order");
         files.push(folder.path().to_owned());
-        assert_eq!(merged(&files), Ok(whole), "named twice is there once");
+        assert_eq!(merged(&files), Ok(whole), "a file that is named twice counts once");
     }
 }
 
@@ -229,31 +233,31 @@ fn what_does_not_belong_together_is_refused_by_name() {
     fs::write(&twin, foreign).expect("a file");
     fails(
         &[files[..3].to_vec(), vec![twin.clone()]].concat(),
-        &["twin.csv is another s", "missing: s.4-of-4.csv"],
+        &["twin.csv belongs to another version of s", "missing: s.4-of-4.csv"],
     );
     let other = ShardHead::sealed("t", "d", Shard { shard: 4, of: 4 }, "run,what\n");
     fs::write(&twin, other).expect("a file");
     fails(&[files.clone(), vec![twin.clone()]].concat(), &["twin.csv belongs to the study t"]);
     fs::write(&twin, "run,what\n1,row 0\n").expect("a file");
-    fails(&[files.clone(), vec![twin]].concat(), &["twin.csv", "no shard"]);
+    fails(&[files.clone(), vec![twin]].concat(), &["twin.csv", "not a shard"]);
     let bytes = fs::read(&files[2]).expect("a shard");
     for damaged in [&bytes[..bytes.len() - 1], &[bytes.as_slice(), b"9,9\n"].concat()] {
         fs::write(&files[2], damaged).expect("a file");
-        fails(&files, &["s.3-of-4.csv is damaged: play shard 3 of 4 again"]);
-        assert!(!merged(&files).expect_err("refused").contains("missing"), "it is there");
+        fails(&files, &["s.3-of-4.csv is damaged: rerun shard 3 of 4"]);
+        assert!(!merged(&files).expect_err("refused").contains("missing"), "it exists");
     }
     fs::write(&files[2], &bytes[..20]).expect("a file");
-    fails(&files, &["s.3-of-4.csv: it is no shard", "missing: s.3-of-4.csv"]);
+    fails(&files, &["s.3-of-4.csv: it is not a shard", "missing: s.3-of-4.csv"]);
     fails(&[folder.path().join("nowhere")], &["nowhere"]);
     let empty = tempfile::tempdir().expect("a folder");
-    fails(&[empty.path().to_owned()], &["there is no shard"]);
+    fails(&[empty.path().to_owned()], &["no shards found"]);
 }
 
 #[test]
 fn the_study_of_the_guide_is_one() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/laboratory/examples/copying.toml");
     let plan = StudyPlan::read(&path, false, &Configuration::shipped()).expect("a study");
-    assert_eq!(plan.experiment.arms.len() * plan.experiment.seeds.len(), 144, "as its first line says");
+    assert_eq!(plan.experiment.arms.len() * plan.experiment.seeds.len(), 144, "as stated in its first line");
 }
 
 #[test]
